@@ -1,0 +1,31 @@
+"""The base of every parameter group, and how a field carries its unit, range and source."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+CODE = "released code of Wu & Chirikjian"
+PAPER = "Wu & Chirikjian, RA-L 2020"
+OURS = "Poursight"
+
+
+class Group(BaseModel):
+    """A frozen set of parameters; unknown names and values that are not finite are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+def quantity(
+    default: Any, doc: str, *, unit: str, source: str, low: float | None = None, high: float | None = None
+) -> Any:
+    """Declare a number (or numbers) in `unit` between `low` and `high`, both included."""
+    return Field(
+        default, description=doc, ge=low, le=high, json_schema_extra={"unit": unit, "source": source}
+    )
+
+
+def choice(default: Any, doc: str, *, source: str) -> Any:
+    """Declare a word out of a few (its type is a `Literal`) or a yes/no."""
+    return Field(default, description=doc, json_schema_extra={"unit": "", "source": source})

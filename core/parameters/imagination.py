@@ -1,0 +1,247 @@
+"""Parameters of the two imaginations (Sec. III-A, III-B, IV-C)."""
+
+from __future__ import annotations
+
+from math import pi, radians
+from typing import Literal
+
+from pydantic import model_validator
+
+from core.parameters.fields import CODE, OURS, PAPER, Group, choice, quantity
+
+N_THETA = 8
+"""Pour directions, theta_pour(i) = i pi/4 (Sec. III-B)."""
+N_INDENT = 3
+"""Indentation distances L_idt(j) of each direction (Sec. III-B)."""
+
+
+class ParticleParameters(Group):
+    """The candy (Sec. IV-C)."""
+
+    shape: Literal["cylinder", "ellipsoid", "sphere"] = choice(
+        "cylinder",
+        "Implicit cylinder (what the released code's candy acts as), ellipsoid hull (the paper's) or sphere.",
+        source=f"{CODE}; {PAPER}, Sec. IV-C: ellipsoid",
+    )
+    diameter_m: float = quantity(
+        0.007, "Diameter across.", unit="m", source=f"{CODE}, with the collision margin", low=0.001, high=0.05
+    )
+    height_m: float = quantity(
+        0.0028,
+        "Thickness; a sphere has none of its own.",
+        unit="m",
+        source=f"{CODE}, with the collision margin",
+        low=0.001,
+        high=0.05,
+    )
+    mass_kg: float = quantity(0.0003, "Mass of one.", unit="kg", source=CODE, low=1e-5, high=0.1)
+
+
+class ContactParameters(Group):
+    """Coulomb friction and restitution of the candies against everything."""
+
+    lateral_friction: float = quantity(0.5, "Sliding friction.", unit="", source="Bullet", low=0, high=5)
+    spinning_friction: float = quantity(
+        0.0, "Friction against spinning about the contact normal.", unit="", source="Bullet", low=0, high=5
+    )
+    rolling_friction: float = quantity(
+        0.0, "Friction against rolling.", unit="", source="Bullet", low=0, high=5
+    )
+    restitution: float = quantity(
+        0.1, "Share of the normal speed kept.", unit="", source=f"{PAPER}, Sec. IV-C", low=0, high=1
+    )
+
+
+class SolverParameters(Group):
+    """How finely Bullet computes."""
+
+    rate_hz: int = quantity(
+        240, "Steps per second.", unit="Hz", source=f"{PAPER}, Sec. III-A", low=60, high=4000
+    )
+    substeps: int = quantity(1, "Parts each step is computed in.", unit="", source=OURS, low=1, high=32)
+    iterations: int = quantity(
+        10, "Iterations of the contact solver.", unit="", source=f"{OURS}; Bullet: 50", low=1, high=500
+    )
+    contact_breaking_m: float = quantity(
+        0.001,
+        "Distance at which a contact is forgotten.",
+        unit="m",
+        source=f"{OURS}; Bullet: 0.02",
+        low=0.0001,
+        high=0.05,
+    )
+
+
+class ContainabilityParameters(Group):
+    """Dropping candies and shaking the object (Sec. III-A)."""
+
+    n_max: int = quantity(
+        289, "N_max: more candies than this are thinned out.", unit="", source=CODE, low=1, high=5000
+    )
+    n_min: int = quantity(64, "N_min: fewer get further layers.", unit="", source=CODE, low=1, high=5000)
+    layer_height_m: float = quantity(
+        0.01,
+        "Lowest layer above the object's AABB.",
+        unit="m",
+        source=f"{PAPER}, Sec. III-A",
+        low=0.001,
+        high=0.5,
+    )
+    layer_spacing_m: float = quantity(
+        0.05, "Distance of the layers.", unit="m", source=f"{PAPER}, Sec. III-A", low=0.001, high=0.5
+    )
+    pitch_margin_m: float = quantity(
+        0.001,
+        "Added on each side of a candy's AABB for the grid's pitch.",
+        unit="m",
+        source=f"{CODE}: Bullet pads its AABB; {PAPER}: none",
+        low=0,
+        high=0.02,
+    )
+    jitter_m: float = quantity(
+        0.0005, "Random shift of each candy, uniform, each way.", unit="m", source=OURS, low=0, high=0.01
+    )
+    drop_s: float = quantity(150 / 240, "Time to fall and settle.", unit="s", source=CODE, low=0, high=20)
+    rotation_s: float = quantity(
+        600 / 240,
+        "Time of one rotation there and back; about x, then y.",
+        unit="s",
+        source=CODE,
+        low=0,
+        high=20,
+    )
+    rotation_rad: float = quantity(
+        pi / 60,
+        "Amplitude of the rotation.",
+        unit="rad",
+        source=f"{PAPER}, Sec. III-A",
+        low=0,
+        high=radians(60),
+    )
+    translation_s: float = quantity(
+        37.5 / 240, "Time of each of the four horizontal pushes.", unit="s", source=CODE, low=0, high=20
+    )
+    translation_m_s2: float = quantity(
+        0.5, "g_h: strength of each push.", unit="m/s^2", source=f"{PAPER}, Sec. III-A", low=0, high=20
+    )
+    omega_threshold: float = quantity(
+        0.0,
+        "Omega_thr: above it the object is an open container.",
+        unit="",
+        source=f"{PAPER}, Sec. IV-C",
+        low=0,
+        high=1,
+    )
+    contact: ContactParameters = ContactParameters(
+        lateral_friction=0.005, spinning_friction=0.5, rolling_friction=0.5, restitution=0.1
+    )
+
+    @model_validator(mode="after")
+    def _bounds_in_order(self) -> ContainabilityParameters:
+        if self.n_min > self.n_max:
+            raise ValueError("n_min must not exceed n_max")
+        return self
+
+
+class CupParameters(Group):
+    """The cup: a truncated cone, open at its wide end (Sec. III-B)."""
+
+    length_m: float = quantity(
+        0.111, "From base to mouth, outside.", unit="m", source=CODE, low=0.02, high=0.4
+    )
+    mouth_radius_m: float = quantity(
+        0.0333, "Outer radius of the mouth.", unit="m", source=CODE, low=0.01, high=0.2
+    )
+    slant_rad: float = quantity(
+        0.028575, "Slant of the inner wall against the axis.", unit="rad", source=CODE, low=0, high=0.5
+    )
+    wall_m: float = quantity(
+        0.002, "Thickness of wall and base.", unit="m", source=CODE, low=0.0005, high=0.02
+    )
+
+    @model_validator(mode="after")
+    def _base_is_open(self) -> CupParameters:
+        if self.base_inner_radius_m <= 0.002:
+            raise ValueError("the cup narrows to a point: shorten length_m or lessen slant_rad")
+        return self
+
+    @property
+    def base_inner_radius_m(self) -> float:
+        """Inner radius where the wall meets the base."""
+        from math import tan
+
+        return self.mouth_radius_m - self.wall_m - (self.length_m - self.wall_m) * tan(self.slant_rad)
+
+
+class PouringParameters(Group):
+    """Pouring from 8 directions at 3 distances (Sec. III-B)."""
+
+    n_pour: int = quantity(
+        60, "N_pour: candies in the cup.", unit="", source=f"{PAPER}, Sec. IV-C", low=1, high=1000
+    )
+    n_packings: int = quantity(
+        3,
+        "Different packings of the cup; each pour is imagined with each.",
+        unit="",
+        source=OURS,
+        low=1,
+        high=50,
+    )
+    indent_0_m: float = quantity(
+        0.01, "L_0: smallest indentation.", unit="m", source=f"{PAPER}, Sec. III-B", low=-0.2, high=0.2
+    )
+    indent_step_ratio: float = quantity(
+        1 / 9,
+        "Delta L as a share of the diagonal of the AABB's top face.",
+        unit="",
+        source=f"{CODE}; {PAPER}: 1/3",
+        low=0,
+        high=2,
+    )
+    gamma_0_rad: float = quantity(
+        radians(45) + 0.028575,
+        "gamma_0: angle the cup is turned by in all.",
+        unit="rad",
+        source=f"{CODE}; {PAPER}: 62 degrees",
+        low=radians(5),
+        high=radians(180),
+    )
+    settle_s: float = quantity(
+        100 / 240, "Time the candies settle in the cup.", unit="s", source=CODE, low=0, high=10
+    )
+    turn_s: float = quantity(
+        500 / 240, "Time of the turn, a quarter of a sine.", unit="s", source=CODE, low=0.1, high=60
+    )
+    wait_s: float = quantity(100 / 240, "Time after the turn.", unit="s", source=CODE, low=0, high=20)
+    pivot_height_m: float = quantity(
+        0.01, "z_E above the object's AABB.", unit="m", source=f"{PAPER}, Sec. III-B", low=0.001, high=0.5
+    )
+    counted: Literal["inside", "above_floor"] = choice(
+        "inside",
+        "Which candies count as poured in: inside the object's AABB, or not below its floor.",
+        source=f"{PAPER}, Sec. III-B; {CODE}: above_floor",
+    )
+    theta_fixed: bool = choice(
+        False,
+        "Pour from theta = 0 only: the paper's comparison 'Imagination w/ fixed theta'.",
+        source=f"{PAPER}, Sec. V-B",
+    )
+    mode: Literal["replay", "full"] = choice(
+        "replay",
+        "Simulate the cup once per packing and replay its candies' exits, or cup and object together.",
+        source=OURS,
+    )
+    cup: CupParameters = CupParameters()
+    contact: ContactParameters = ContactParameters(
+        lateral_friction=0.2, spinning_friction=0.1, rolling_friction=0.1, restitution=0.0
+    )
+
+
+class EvidenceParameters(Group):
+    """What is kept to look at afterwards."""
+
+    record_interval_s: float = quantity(
+        1 / 24, "Time between two recorded particle poses.", unit="s", source=OURS, low=1 / 240, high=1
+    )
+    renders: bool = choice(True, "Render stills of the drop and of the 24 pours.", source=OURS)
+    films: bool = choice(True, "Render films of the drop and of the chosen pour.", source=OURS)

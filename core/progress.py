@@ -1,0 +1,33 @@
+"""How a stage tells what it is doing and learns that it should stop."""
+
+from __future__ import annotations
+
+from threading import Event
+
+from core.errors import Cancelled
+
+
+class Reporter:
+    """Receives a stage's progress. This one stays silent; faces (terminal, window) derive from it.
+
+    A stage calls `progress` often and `warn` for what the user should know though the work goes on. Both run
+    in the process and thread of the stage's caller, never in a worker.
+    """
+
+    def __init__(self) -> None:
+        self._cancel = Event()
+
+    def progress(self, stage: str, done: float, total: float) -> None:
+        """Tell that `done` of `total` units of `stage` are finished."""
+
+    def warn(self, sentence: str) -> None:
+        """Tell something the user should know though the work goes on."""
+
+    def cancel(self) -> None:
+        """Ask the running stage to stop; safe from any thread."""
+        self._cancel.set()
+
+    def raise_if_cancelled(self) -> None:
+        """Raise `Cancelled` if somebody asked to stop."""
+        if self._cancel.is_set():
+            raise Cancelled("Stopped on request; finished stages are kept, run the same command to continue.")
