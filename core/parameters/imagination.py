@@ -221,10 +221,14 @@ class PouringParameters(Group):
         "Which candies count as poured in: inside the object's AABB, or not below its floor.",
         source=f"{PAPER}, Sec. III-B; {CODE}: above_floor",
     )
-    theta_fixed: bool = choice(
-        False,
-        "Pour from theta = 0 only: the paper's comparison 'Imagination w/ fixed theta'.",
+    theta_fixed_rad: float | None = quantity(
+        None,
+        "Pour from this direction only, against the base frame's x-axis: the paper's comparison "
+        "'Imagination w/ fixed theta'; none: from all eight.",
+        unit="rad",
         source=f"{PAPER}, Sec. V-B",
+        low=-2 * pi,
+        high=2 * pi,
     )
     mode: Literal["replay", "full"] = choice(
         "replay",

@@ -78,6 +78,14 @@ class CollisionParameters(Group):
         "The surface itself (exact), or convex parts by V-HACD (the paper's) or CoACD.",
         source=f"{OURS}; {PAPER}: V-HACD",
     )
+    aabb_margin_m: float = quantity(
+        0.0,
+        "Added on every side of the object's AABB, as Bullet pads it.",
+        unit="m",
+        source=f"{PAPER}: none; {CODE}: 0.003, measured",
+        low=0,
+        high=0.02,
+    )
     max_faces: int = quantity(
         10_000, "Faces above which the mesh is simplified first.", unit="", source=OURS, low=100, high=200_000
     )

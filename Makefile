@@ -1,0 +1,28 @@
+# `make run` and `make test` are all a newcomer needs; both prepare .venv first.
+.PHONY: run test setup lint unit bench collision-table clean
+
+run: setup
+	.venv/bin/poursight demo
+
+setup:
+	@tools/setup
+
+test: setup lint unit
+
+lint:
+	.venv/bin/ruff format --check .
+	.venv/bin/ruff check .
+	.venv/bin/mypy
+	.venv/bin/lint-imports
+
+unit:
+	.venv/bin/python -m pytest
+
+bench: setup
+	.venv/bin/python -m tests.benchmarks.stages
+
+collision-table: setup
+	.venv/bin/python -m tests.benchmarks.collision_table
+
+clean:
+	rm -rf .venv build *.egg-info

@@ -1,0 +1,143 @@
+"""The command line: everything the program does, without a window (the contract is in docs/command-line.md)."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Optional
+
+import typer
+
+from core.errors import PoursightError
+
+app = typer.Typer(
+    name="poursight",
+    help="Can I pour into it? Scan an unknown object, imagine by physics whether it contains, and where to pour.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+SessionArgument = Annotated[Path, typer.Argument(metavar="SESSION", help="A session's folder.")]
+SessionOption = Annotated[Path, typer.Option("--session", metavar="DIR", help="The session's folder.")]
+PresetOption = Annotated[
+    Optional[str],  # noqa: UP045 - typer reads it at run time
+    typer.Option("--preset", metavar="P", help="default, paper, authors, or a preset file."),
+]
+SetOption = Annotated[
+    Optional[list[str]],  # noqa: UP045
+    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; see 'poursight parameters'."),
+]
+SeedOption = Annotated[Optional[int], typer.Option("--seed", help="Seed of all randomness.")]  # noqa: UP045
+WorkersOption = Annotated[
+    Optional[int],  # noqa: UP045
+    typer.Option("--workers", min=1, max=256, help="Worker processes; by default one a processor."),
+]
+
+
+@app.command("import")
+def import_scan(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="A scan in the authors' layout.")],
+    session: SessionOption,
+) -> None:
+    """Take a scan into a session: rgbd/frame-*.{color.png,depth.png,pose.txt}, camera-intrinsics.txt."""
+    from app import commands
+
+    commands.import_scan(folder, session)
+
+
+@app.command()
+def reconstruct(
+    session: SessionArgument,
+    preset: PresetOption = None,
+    settings: SetOption = None,
+    workers: WorkersOption = None,
+) -> None:
+    """Fuse a session's depth images into the object's mesh."""
+    from app import commands
+
+    commands.reconstruct(session, commands.Choices(preset, settings or [], None), workers)
+
+
+@app.command()
+def imagine(
+    source: Annotated[
+        Path, typer.Argument(metavar="SESSION|MESH", help="A session, or a mesh in metres, z up.")
+    ],
+    preset: PresetOption = None,
+    settings: SetOption = None,
+    workers: WorkersOption = None,
+    seed: SeedOption = None,
+    json_file: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--json", metavar="FILE", help="Write the answer there ('-': on stdout)."),
+    ] = None,
+    session: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--session", metavar="DIR", help="For a mesh: keep everything in this session."),
+    ] = None,
+) -> None:
+    """Imagine whether the object is an open container and how to pour into it."""
+    from app import commands
+
+    commands.imagine(source, commands.Choices(preset, settings or [], seed), workers, json_file, session)
+
+
+@app.command()
+def report(session: SessionArgument, workers: WorkersOption = None) -> None:
+    """Render the evidence of a session and write its report.html."""
+    from app import commands
+
+    commands.report(session, workers)
+
+
+@app.command()
+def demo(
+    name: Annotated[str, typer.Option("--object", metavar="NAME", help="A built-in object.")] = "mug",
+    out: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--out", metavar="DIR", help="The session's folder; by default demo/NAME."),
+    ] = None,
+    preset: PresetOption = None,
+    settings: SetOption = None,
+    workers: WorkersOption = None,
+    seed: SeedOption = None,
+) -> None:
+    """Do the whole job in the simulated cell: scan, reconstruct, imagine, report."""
+    from app import commands
+
+    out = out or Path("demo") / name
+    commands.demo(name, out, commands.Choices(preset, settings or [], seed), workers)
+
+
+@app.command()
+def parameters(preset: PresetOption = None) -> None:
+    """List every parameter with its value, unit, range and source."""
+    from app import commands
+
+    commands.parameters(preset)
+
+
+@app.command()
+def doctor() -> None:
+    """Check this installation: versions, renderer, known-bad packages, free disk."""
+    from app.doctor import examine
+
+    raise typer.Exit(examine())
+
+
+def main() -> None:
+    """Run the command line; what can be explained is one sentence and exit code 1."""
+    try:
+        app()
+    except PoursightError as error:
+        print(f"poursight: {error}", file=sys.stderr)
+        sys.exit(1)
+    except BrokenPipeError:
+        sys.stderr.close()  # the reader of our output has gone; nothing is left to say
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,180 @@
+"""What the commands do, once their words are understood."""
+
+from __future__ import annotations
+
+import json
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from app.answer import answer_table, verdict_lines
+from app.terminal import TerminalReporter
+from core.errors import InputError, SessionError
+from core.files import read_json, write_json
+from core.imagination.imagine import WORKER_MODULE
+from core.parameters import Parameters, apply_settings, describe, difference, flatten, load_preset
+from core.pipeline import Pipeline
+from core.session import Session
+from core.workers import WorkerPool
+
+PARAMETERS_FILE = "parameters.json"
+
+
+@dataclass(frozen=True)
+class Choices:
+    """Parameters as chosen on the command line; nothing chosen means what the session used before."""
+
+    preset: str | None
+    settings: list[str]
+    seed: int | None
+
+    def parameters(self, session: Path) -> tuple[str, Parameters]:
+        """Return the preset's name and the parameters.
+
+        Raises:
+            InputError: an unknown preset or parameter, or a value out of its range.
+        """
+        preset, parameters = self._base(session / PARAMETERS_FILE)
+        settings: dict[str, Any] = {}
+        for text in self.settings:
+            name, equals, value = text.partition("=")
+            if not equals:
+                raise InputError(f"'--set {text}' lacks a value: write --set name=value.")
+            settings[name.strip()] = value.strip()
+        if self.seed is not None:
+            settings["seed"] = self.seed
+        return preset, apply_settings(parameters, settings)
+
+    def _base(self, remembered: Path) -> tuple[str, Parameters]:
+        if self.preset is None and remembered.is_file():
+            table = read_json(remembered)
+            return str(table.get("preset", "default")), load_preset(str(remembered))
+        preset = self.preset or "default"
+        return preset, load_preset(preset)
+
+
+def import_scan(folder: Path, session_folder: Path) -> None:
+    """Take a scan into a session."""
+    with _working(session_folder, Choices(None, [], None), None) as pipeline:
+        scan = pipeline.import_scan(folder)
+    print(f"{len(scan.frames)} views imported into {session_folder}.")
+
+
+def reconstruct(session_folder: Path, choices: Choices, workers: int | None) -> None:
+    """Reconstruct a session's scan."""
+    with _working(session_folder, choices, workers, existing=True) as pipeline:
+        result = pipeline.reconstruction()
+    width, depth, height = (1000 * result.mesh.extents_m).round()
+    print(
+        f"Reconstructed {width:.0f} x {depth:.0f} x {height:.0f} mm, {len(result.mesh.faces)} faces: "
+        f"{session_folder / 'reconstruction' / 'mesh.ply'}"
+    )
+
+
+def imagine(
+    source: Path, choices: Choices, workers: int | None, json_file: Path | None, session: Path | None
+) -> None:
+    """Imagine a session or a mesh and print the answer."""
+    with tempfile.TemporaryDirectory(prefix="poursight-") as scratch:
+        is_mesh = not source.is_dir()
+        folder = (session or Path(scratch) / "session") if is_mesh else source
+        if session is not None and not is_mesh:
+            raise InputError(f"{source} is a session already: leave out --session, which is for meshes.")
+        with _working(folder, choices, workers, existing=not is_mesh) as pipeline:
+            if is_mesh:
+                pipeline.import_mesh(source)
+            result = pipeline.imagination()
+            table = answer_table(result, pipeline.parameters)
+    if json_file is not None and str(json_file) == "-":
+        json.dump(table, sys.stdout, indent=2)
+        print()
+        return
+    if json_file is not None:
+        _write_answer(json_file, table)
+    print("\n".join(verdict_lines(result)))
+
+
+def report(session_folder: Path, workers: int | None) -> None:
+    """Write a session's report."""
+    with _working(session_folder, Choices(None, [], None), workers, existing=True) as pipeline:
+        path = pipeline.report()
+    print(f"Report: {path}")
+
+
+def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
+    """Do the whole job with a built-in object."""
+    from hardware.simulation.objects import builtin_object
+
+    mesh = builtin_object(name)
+    with _working(out, choices, workers) as pipeline:
+        _simulated_scan(pipeline, name, mesh)
+        result = pipeline.imagination()
+        path = pipeline.report()
+    print("\n".join(verdict_lines(result)))
+    print(f"Report: {path}")
+
+
+def parameters(preset: str | None) -> None:
+    """Print all parameters."""
+    values = flatten(load_preset(preset or "default"))
+    table = Table("name", "value", "range", "meaning", "source", box=None, pad_edge=False)
+    for fact in describe():
+        table.add_row(fact.name, _short(values[fact.name]), fact.range_text, fact.doc, fact.source)
+    console = Console()
+    console.print(table) if console.is_terminal else Console(width=240).print(table)
+
+
+def _simulated_scan(pipeline: Pipeline, name: str, mesh: Any) -> None:
+    """Scan in the simulated cell unless the session already holds this very scan."""
+    from hardware.simulation.scan import simulate_scan
+
+    origin = {"object": name, "seed": pipeline.parameters.seed, "camera": "simulated"}
+    if pipeline.session.is_fresh("scan", {}, origin):
+        return
+    pipeline.keep_scan(simulate_scan(mesh, pipeline.parameters.seed, pipeline.reporter), origin)
+
+
+@contextmanager
+def _working(
+    folder: Path, choices: Choices, workers: int | None, existing: bool = False
+) -> Iterator[Pipeline]:
+    """Hold the session, start the workers, show progress, and remember the parameters."""
+    if existing and not folder.exists():
+        raise SessionError(
+            f"There is no session {folder}; 'poursight import FOLDER --session {folder}' makes one."
+        )
+    preset, chosen = choices.parameters(folder)
+    changes = {name: value for name, (_, value) in difference(chosen, Parameters()).items()}
+    with WorkerPool(workers) as pool, TerminalReporter() as reporter:
+        pool.start(WORKER_MODULE)
+        _print_difference(preset, chosen)
+        session = Session.open(folder) if existing else Session.create_or_open(folder)
+        with session:
+            session.write_json(PARAMETERS_FILE, {"preset": preset, "parameters": changes})
+            yield Pipeline(session, chosen, pool, reporter, preset)
+
+
+def _print_difference(preset: str, parameters: Parameters) -> None:
+    base = load_preset(preset) if not Path(preset).suffix else Parameters()
+    for name, (before, after) in difference(parameters, base).items():
+        print(f"{name} = {_short(after)} (preset {preset}: {_short(before)})", file=sys.stderr)
+
+
+def _write_answer(path: Path, table: dict[str, Any]) -> None:
+    try:
+        write_json(path, table)
+    except OSError as error:
+        raise InputError(
+            f"The answer cannot be written to {path} ({error.strerror}); name another file."
+        ) from error
+
+
+def _short(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

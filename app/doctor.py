@@ -1,0 +1,88 @@
+"""`poursight doctor`: is this installation able to do the job?"""
+
+from __future__ import annotations
+
+import platform
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from core.errors import PoursightError
+from core.imagination.rendering import renderer_name
+from core.progress import Reporter
+from core.workers import Task, WorkerPool
+
+_FREE_DISK_BYTES = 2 * 10**9
+_SHOWN = ("numpy", "numba", "scipy", "pybullet", "open3d-cpu", "trimesh", "vhacdx", "coacd", "pydantic")
+_KNOWN_BAD = {
+    ("PySide6-Essentials", "6.12.0"): "aborts after some thousand calls on Python 3.11; use 6.11.3",
+    ("PySide6-Essentials", "6.11.0"): "is withdrawn by its users; use 6.11.3",
+    ("PySide6-Essentials", "6.11.1"): "is withdrawn by its users; use 6.11.3",
+}
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line of the examination; `problem` says what to do when something is wrong."""
+
+    subject: str
+    value: str
+    problem: str | None = None
+
+
+def examine() -> int:
+    """Print what was found; return 1 if something stands in the way of the job, else 0."""
+    checks: tuple[Callable[[], list[Finding]], ...] = (_python, _packages, _known_bad, _renderer, _disk)
+    findings = [finding for check in checks for finding in check()]
+    for finding in findings:
+        mark = "ok  " if finding.problem is None else "BAD "
+        print(f"{mark}{finding.subject:<22}{finding.value}")
+        if finding.problem is not None:
+            print(f"    -> {finding.problem}")
+    return int(any(finding.problem for finding in findings))
+
+
+def _python() -> list[Finding]:
+    fits = (3, 10) <= sys.version_info < (3, 12)
+    problem = None if fits else "Python 3.10 or 3.11 is needed: PyBullet has no wheels for newer ones."
+    return [Finding("python", f"{platform.python_version()} on {platform.platform()}", problem)]
+
+
+def _packages() -> list[Finding]:
+    findings = []
+    for name in ("poursight", *_SHOWN):
+        try:
+            findings.append(Finding(name, version(name)))
+        except PackageNotFoundError:
+            findings.append(Finding(name, "missing", "Run 'make setup'."))
+    return findings
+
+
+def _known_bad() -> list[Finding]:
+    findings = []
+    for (name, bad), why in _KNOWN_BAD.items():
+        try:
+            installed = version(name)
+        except PackageNotFoundError:
+            continue
+        if installed == bad:
+            findings.append(Finding(name, installed, f"{name} {bad} {why}."))
+    return findings
+
+
+def _renderer() -> list[Finding]:
+    try:
+        with WorkerPool(1) as pool:
+            name = pool.run([Task(renderer_name, ())], "renderer", Reporter())[0]
+    except PoursightError as error:
+        return [Finding("renderer", "none", f"{error} Pictures of the imagination cannot be made.")]
+    return [Finding("renderer", name)]
+
+
+def _disk() -> list[Finding]:
+    free = shutil.disk_usage(Path.cwd()).free
+    problem = None if free > _FREE_DISK_BYTES else "Less than 2 GB are free here: make room for sessions."
+    return [Finding("free disk", f"{free / 1e9:.1f} GB in {Path.cwd()}", problem)]

@@ -1,0 +1,96 @@
+"""The terminal as a face: progress with time left, warnings, and Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from types import FrameType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from core.progress import Reporter
+
+_PATIENCE_S = 1.5
+_LINE_EVERY_S = 2.0
+
+
+class TerminalReporter(Reporter):
+    """Shows a bar for each stage on a terminal, and now and then a plain line when stderr is piped."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._console = Console(stderr=True, highlight=False)
+        self._bars: dict[str, TaskID] = {}
+        self._started_s: dict[str, float] = {}
+        self._last_line_s: dict[str, float] = {}
+        self._progress: Progress | None = None
+        self.warnings: list[str] = []
+
+    def __enter__(self) -> TerminalReporter:
+        if self._console.is_terminal:
+            self._progress = Progress(
+                TextColumn("{task.description:<16}"),
+                BarColumn(),
+                TextColumn("{task.percentage:>3.0f} %"),
+                TimeElapsedColumn(),
+                TextColumn("left"),
+                TimeRemainingColumn(),
+                console=self._console,
+            )
+            self._progress.start()
+        self._handlers = {
+            number: signal.signal(number, self._on_interrupt) for number in (signal.SIGINT, signal.SIGTERM)
+        }
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
+        if self._progress is not None:
+            self._progress.stop()
+
+    def progress(self, stage: str, done: float, total: float) -> None:
+        """Show that `done` of `total` of a stage are finished."""
+        if self._progress is None:
+            self._print_line(stage, done, total)
+            return
+        if stage not in self._bars:
+            self._bars[stage] = self._progress.add_task(stage, total=total)
+        self._progress.update(self._bars[stage], completed=done, total=total)
+
+    def warn(self, sentence: str) -> None:
+        """Show and keep a sentence."""
+        self.warnings.append(sentence)
+        self._console.print(f"Note: {sentence}", style="yellow", markup=False, soft_wrap=True)
+
+    def _print_line(self, stage: str, done: float, total: float) -> None:
+        now = time.monotonic()
+        started = self._started_s.setdefault(stage, now)
+        is_new, is_done = stage not in self._last_line_s, done >= total
+        if not (is_new or is_done or now - self._last_line_s[stage] > _LINE_EVERY_S):
+            return
+        if self._last_line_s.get(stage) == float("inf"):
+            return  # its last line has been printed
+        self._last_line_s[stage] = float("inf") if is_done else now
+        fraction = done / total if total else 1.0
+        left = (
+            f", about {(now - started) * (1 - fraction) / fraction:.0f} s left" if 0.02 < fraction < 1 else ""
+        )
+        print(f"{stage}: {100 * fraction:.0f} %{left}", file=sys.stderr, flush=True)
+
+    def _on_interrupt(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002
+        """Ask the work to stop; what does not listen in time (a long call into C) is left behind."""
+        self.cancel()
+        timer = threading.Timer(_PATIENCE_S, self._leave)
+        timer.daemon = True
+        timer.start()
+
+    def _leave(self) -> None:
+        # Workers see their parent go and end; a half-written stage is cleared away at the next start.
+        sys.stderr.write("Stopped on request; finished stages are kept, run the same command to continue.\n")
+        sys.stderr.flush()
+        os._exit(1)

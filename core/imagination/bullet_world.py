@@ -1,0 +1,236 @@
+"""One fresh Bullet world: the only place that steps the physics.
+
+What made it fast and true was measured (docs/decisions/0001-physics-engine-settings.md): particles and object
+as maximal-coordinate bodies, few solver iterations, short contacts, no ground (what falls past the object is
+taken out), the object moved kinematically, and finer steps only while a particle is fast.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import hypot
+
+import numpy as np
+import pybullet as bullet
+
+from core.errors import WorkerError
+from core.geometry import FloatArray
+from core.imagination.body import BodyFile
+from core.imagination.particle_shape import ellipsoid_hull_m
+from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
+
+GRAVITY_M_S2 = 9.81
+CHECK_STEPS = 4
+"""Steps between two looks at the particles for those that fell or are fast."""
+_FALLEN_MARGIN_M = 0.02
+_DRIVEN_MASS_KG = 1e4
+
+
+@cache
+def _server() -> int:
+    """Connect this process to a physics server: anew for each world takes 15 ms, resetting it 1.5 ms."""
+    client: int = bullet.connect(bullet.DIRECT)
+    if client < 0:
+        raise WorkerError("Bullet gave no physics server; close other simulations and try again.")
+    return client
+
+
+class BulletWorld:
+    """A world with a few bodies that are not moved by particles, and a growing number of these."""
+
+    def __init__(
+        self,
+        solver: SolverParameters,
+        particle: ParticleParameters,
+        contact: ContactParameters,
+        floor_m: float,
+    ) -> None:
+        """Start empty; particles below `floor_m` are taken out."""
+        self._solver = solver
+        self._particle = particle
+        self._contact = contact
+        self._fallen_below_m = floor_m - _FALLEN_MARGIN_M
+        self._fast_m_s = min(particle.height_m, particle.diameter_m) / 2 * solver.rate_hz
+        self._client = _server()
+        self._substeps = 1
+        self._steps = 0
+        self.particle_ids: list[int | None] = []
+        bullet.resetSimulation(physicsClientId=self._client)
+        bullet.setPhysicsEngineParameter(
+            fixedTimeStep=1 / solver.rate_hz,
+            numSolverIterations=solver.iterations,
+            numSubSteps=0,
+            contactBreakingThreshold=solver.contact_breaking_m,
+            deterministicOverlappingPairs=1,
+            physicsClientId=self._client,
+        )
+        self.set_gravity(np.array([0.0, 0.0, -GRAVITY_M_S2]))
+        self._shape = self._create_particle_shape()
+        # Without a visual of its own Bullet makes one from the shape, which takes longer than all the rest.
+        self._visual: int = bullet.createVisualShape(
+            bullet.GEOM_BOX, halfExtents=[0.001] * 3, physicsClientId=self._client
+        )
+
+    def __enter__(self) -> BulletWorld:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        bullet.resetSimulation(physicsClientId=self._client)
+
+    def set_gravity(self, acceleration_m_s2: FloatArray) -> None:
+        """Set the force field (3,), per mass."""
+        self._gravity_m_s2 = acceleration_m_s2
+        bullet.setGravity(*acceleration_m_s2.tolist(), physicsClientId=self._client)
+
+    def add_fixed_body(self, body: BodyFile, restitution: float) -> None:
+        """Add a body that rests at the origin."""
+        self._add_body(body, restitution, 0.0)
+
+    def add_driven_body(self, body: BodyFile, restitution: float) -> int:
+        """Add a body that `drive` places before every step, and return its id.
+
+        It is a very heavy dynamic body: for a static one Bullet ignores the velocity, so that a wall which
+        moves against the particles neither carries nor stops them and they slip through.
+        """
+        return self._add_body(body, restitution, _DRIVEN_MASS_KG)
+
+    def drive(
+        self,
+        body_id: int,
+        position_m: FloatArray,
+        quaternion: FloatArray,
+        velocity_m_s: FloatArray,
+        angular_velocity_rad_s: FloatArray,
+    ) -> None:
+        """Place a driven body for the next step, with the velocities that its motion has there."""
+        # The step adds gravity to every dynamic body; what is taken off here makes up for it.
+        held = velocity_m_s - self._gravity_m_s2 / self._solver.rate_hz
+        bullet.resetBasePositionAndOrientation(
+            body_id, position_m.tolist(), quaternion.tolist(), physicsClientId=self._client
+        )
+        bullet.resetBaseVelocity(
+            body_id, held.tolist(), angular_velocity_rad_s.tolist(), physicsClientId=self._client
+        )
+
+    def add_particle(self, pose: FloatArray, velocity: FloatArray | None = None) -> int:
+        """Add a particle at `pose` (7,) with `velocity` (6,), linear then angular; return its index."""
+        body_id = bullet.createMultiBody(
+            self._particle.mass_kg,
+            self._shape,
+            self._visual,
+            basePosition=pose[:3].tolist(),
+            baseOrientation=pose[3:].tolist(),
+            useMaximalCoordinates=1,
+            physicsClientId=self._client,
+        )
+        bullet.changeDynamics(
+            body_id,
+            -1,
+            lateralFriction=self._contact.lateral_friction,
+            spinningFriction=self._contact.spinning_friction,
+            rollingFriction=self._contact.rolling_friction,
+            restitution=self._contact.restitution,
+            activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+            physicsClientId=self._client,
+        )
+        if velocity is not None:
+            bullet.resetBaseVelocity(
+                body_id, velocity[:3].tolist(), velocity[3:].tolist(), physicsClientId=self._client
+            )
+        self.particle_ids.append(body_id)
+        return len(self.particle_ids) - 1
+
+    def step(self) -> None:
+        """Advance by one step; every few steps take out fallen particles and choose the fineness."""
+        if self._steps % CHECK_STEPS == 0:
+            self._look_after_particles()
+        bullet.stepSimulation(physicsClientId=self._client)
+        self._steps += 1
+
+    def poses(self) -> FloatArray:
+        """Return (N, 7) positions and quaternions of all particles, NaN for those taken out."""
+        poses = np.full((len(self.particle_ids), 7), np.nan)
+        for index, body_id in enumerate(self.particle_ids):
+            if body_id is not None:
+                position, quaternion = bullet.getBasePositionAndOrientation(
+                    body_id, physicsClientId=self._client
+                )
+                poses[index] = (*position, *quaternion)
+        return poses
+
+    def pose_and_velocity(self, index: int) -> tuple[FloatArray, FloatArray]:
+        """Return pose (7,) and velocity (6,) of a particle that is there."""
+        body_id = self.particle_ids[index]
+        position, quaternion = bullet.getBasePositionAndOrientation(body_id, physicsClientId=self._client)
+        linear, angular = bullet.getBaseVelocity(body_id, physicsClientId=self._client)
+        return np.array([*position, *quaternion]), np.array([*linear, *angular])
+
+    def height_m(self, index: int) -> float:
+        """Return the height of a particle's centre, minus infinity if it was taken out."""
+        body_id = self.particle_ids[index]
+        if body_id is None:
+            return -np.inf
+        height: float = bullet.getBasePositionAndOrientation(body_id, physicsClientId=self._client)[0][2]
+        return height
+
+    def remove_particle(self, index: int) -> None:
+        """Take a particle out."""
+        bullet.removeBody(self.particle_ids[index], physicsClientId=self._client)
+        self.particle_ids[index] = None
+
+    def top_speed_m_s(self) -> float:
+        """Return the speed of the fastest particle."""
+        ids = [body_id for body_id in self.particle_ids if body_id is not None]
+        velocities = [bullet.getBaseVelocity(body_id, physicsClientId=self._client)[0] for body_id in ids]
+        return max((hypot(*velocity) for velocity in velocities), default=0.0)
+
+    def _look_after_particles(self) -> None:
+        for index, body_id in enumerate(self.particle_ids):
+            if body_id is not None and self.height_m(index) < self._fallen_below_m:
+                self.remove_particle(index)
+        if self._solver.substeps > 1:
+            substeps = self._solver.substeps if self.top_speed_m_s() > self._fast_m_s else 1
+            if substeps != self._substeps:
+                self._substeps = substeps
+                bullet.setPhysicsEngineParameter(
+                    numSubSteps=substeps if substeps > 1 else 0, physicsClientId=self._client
+                )
+
+    def _add_body(self, body: BodyFile, restitution: float, mass_kg: float) -> int:
+        shape = bullet.createCollisionShape(
+            bullet.GEOM_MESH,
+            fileName=body.path,
+            flags=bullet.GEOM_FORCE_CONCAVE_TRIMESH if body.is_concave else 0,
+            physicsClientId=self._client,
+        )
+        body_id: int = bullet.createMultiBody(
+            mass_kg, shape, self._visual, useMaximalCoordinates=1, physicsClientId=self._client
+        )
+        # Bullet multiplies the two frictions of a contact: with 1 here the particle's own value counts.
+        bullet.changeDynamics(
+            body_id,
+            -1,
+            restitution=restitution,
+            lateralFriction=1.0,
+            linearDamping=0,
+            angularDamping=0,
+            activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
+            physicsClientId=self._client,
+        )
+        return body_id
+
+    def _create_particle_shape(self) -> int:
+        particle = self._particle
+        if particle.shape == "sphere":
+            arguments = {"shapeType": bullet.GEOM_SPHERE, "radius": particle.diameter_m / 2}
+        elif particle.shape == "cylinder":
+            arguments = {
+                "shapeType": bullet.GEOM_CYLINDER,
+                "radius": particle.diameter_m / 2,
+                "height": particle.height_m,
+            }
+        else:
+            hull = ellipsoid_hull_m(particle.diameter_m, particle.height_m)
+            arguments = {"shapeType": bullet.GEOM_MESH, "vertices": hull.tolist()}
+        shape: int = bullet.createCollisionShape(**arguments, physicsClientId=self._client)
+        return shape

@@ -1,0 +1,27 @@
+"""What the pipeline lets its workers do: each job reads its input from the session's files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.collision import CollisionModel, build_collision_model
+from core.mesh import TriangleMesh
+from core.parameters.reconstruction import CollisionParameters, ReconstructionParameters
+from core.reconstruction import Reconstruction, reconstruct
+from core.scan import read_scan
+from core.workers import WorkerReporter
+
+
+def reconstruction_job(
+    scan_folder: Path, parameters: ReconstructionParameters
+) -> tuple[Reconstruction, list[str]]:
+    """Reconstruct a scan; return the result and what the user should know."""
+    reporter = WorkerReporter()
+    scan = read_scan(scan_folder, WorkerReporter())  # its warnings were given when it was imported
+    return reconstruct(scan, parameters, reporter), reporter.warnings
+
+
+def collision_job(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[CollisionModel, list[str]]:
+    """Build the collision model; return the result and what the user should know."""
+    reporter = WorkerReporter()
+    return build_collision_model(mesh, parameters, reporter), reporter.warnings

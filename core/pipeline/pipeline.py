@@ -1,0 +1,226 @@
+"""The way of the data through a session: every stage is loaded when fresh and run when stale."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter
+from typing import Any, Protocol, TypeVar
+
+from core.collision import CollisionModel
+from core.errors import SessionError
+from core.files import read_json, write_json
+from core.imagination.cup import cup_mesh
+from core.imagination.imagine import Imagination, imagine
+from core.imagination.rendering import Evidence, render_evidence
+from core.imagination.results import Containability, PourChoice, PourGrid
+from core.mesh import TriangleMesh
+from core.mesh_file import read_mesh, read_mesh_parts, write_mesh
+from core.parameters import Parameters
+from core.pipeline.jobs import collision_job, reconstruction_job
+from core.progress import Reporter
+from core.reconstruction import Reconstruction
+from core.scan import Scan, read_scan, write_scan
+from core.session import Session
+from core.workers import Task, WorkerPool
+
+WARNINGS_FILE = "warnings.json"
+
+
+class _Result(Protocol):
+    def save(self, folder: Path) -> None: ...
+
+
+_R = TypeVar("_R", bound=_Result)
+
+
+class Pipeline:
+    """Runs the stages of one session with one set of parameters; the session must be held (`with session`).
+
+    Every method returns a stage's result. It runs what is stale before it, and nothing that is fresh.
+    """
+
+    def __init__(
+        self, session: Session, parameters: Parameters, pool: WorkerPool, reporter: Reporter
+    ) -> None:
+        self.session = session
+        self.parameters = parameters
+        self._pool = pool
+        self._reporter = reporter
+
+    def import_scan(self, folder: Path) -> Scan:
+        """Take over a scan in the authors' layout.
+
+        Raises:
+            InputError: the scan cannot be used as it is.
+        """
+        return self.keep_scan(read_scan(folder, self._reporter), {"source": str(folder.resolve())})
+
+    def keep_scan(self, scan: Scan, origin: dict[str, Any]) -> Scan:
+        """Make `scan` the session's scan; `origin` says where it is from."""
+        with self.session.writing("scan", inputs={}, parameters=origin) as stage:
+            write_scan(scan, stage)
+        return scan
+
+    def import_mesh(self, path: Path) -> TriangleMesh:
+        """Take over a mesh instead of a scan; a file of several convex parts keeps them.
+
+        Raises:
+            InputError: the mesh cannot be used as it is.
+        """
+        mesh = read_mesh(path, self._reporter)
+        parts = read_mesh_parts(path)
+        with self.session.writing("mesh", inputs={}, parameters={"source": str(path.resolve())}) as stage:
+            write_mesh(stage / "mesh.ply", mesh)
+            if len(parts) > 1:
+                CollisionModel.from_parts(parts).save(stage)
+        return mesh
+
+    def reconstruction(self) -> Reconstruction:
+        """Fuse the scan into a mesh (Sec. IV-A)."""
+        settings = self.parameters.reconstruction
+        job = Task(reconstruction_job, (self.session.path / "scan", settings))
+
+        def run() -> Reconstruction:
+            return self._in_worker(job, "reconstruction", "reconstruction")
+
+        return self._fresh("reconstruction", ("scan",), settings.model_dump(), Reconstruction.load, run)
+
+    def surface(self) -> TriangleMesh:
+        """Return the object's mesh, reconstructed or imported."""
+        if self.session.record("mesh") is not None:
+            return read_mesh(self.session.folder("mesh") / "mesh.ply", Reporter())
+        return self.reconstruction().mesh
+
+    def collision(self) -> CollisionModel:
+        """Make the surface a body for the physics (Sec. IV-C)."""
+        settings = self.parameters.collision
+        surface = self.surface()
+
+        def run() -> CollisionModel:
+            given = self._given_parts()
+            if given is not None and settings.method != "exact":
+                return given
+            return self._in_worker(Task(collision_job, (surface, settings)), "collision", "collision")
+
+        return self._fresh("collision", (self._source(),), settings.model_dump(), CollisionModel.load, run)
+
+    def imagination(self) -> Imagination:
+        """Imagine open containability and the pours (Sec. III-A, III-B)."""
+        model = self.collision()
+        settings = self._imagination_settings()
+        inputs = self._digests(("collision",))
+        if all(self.session.is_fresh(stage, inputs, settings) for stage in ("containability", "pouring")):
+            return self._load_imagination()
+        result = imagine(model, self.parameters, self._pool, self._reporter)
+        with self.session.writing(
+            "containability", inputs=inputs, parameters=settings, seconds=result.containability_s
+        ) as stage:
+            result.containability.save(stage)
+        with self.session.writing(
+            "pouring", inputs=inputs, parameters=settings, seconds=result.pouring_s
+        ) as stage:
+            choice = None if result.choice is None else result.choice.to_table()
+            write_json(stage / "choice.json", {"choice": choice})
+            if result.grid is not None:
+                result.grid.save(stage)
+        return result
+
+    def evidence(self) -> Evidence:
+        """Render stills and films of what was imagined."""
+        imagination = self.imagination()
+        settings = self.parameters.evidence.model_dump() | {"particle": self.parameters.particle.model_dump()}
+
+        def run() -> Evidence:
+            return render_evidence(
+                self.surface(),
+                cup_mesh(self.parameters.pouring.cup),
+                self.parameters,
+                imagination.containability,
+                imagination.grid,
+                imagination.choice,
+                self._pool,
+                self._reporter,
+            )
+
+        return self._fresh(
+            "evidence", (self._source(), "containability", "pouring"), settings, Evidence.load, run
+        )
+
+    def warnings(self) -> list[str]:
+        """Return what the stages wanted the user to know."""
+        found: list[str] = []
+        for stage in ("scan", "mesh", "reconstruction", "collision"):
+            path = self.session.path / stage / WARNINGS_FILE
+            if path.is_file():
+                found += read_json(path)["warnings"]
+        return found
+
+    def _fresh(
+        self,
+        stage: str,
+        inputs: tuple[str, ...],
+        parameters: dict[str, Any],
+        load: Callable[[Path], _R],
+        run: Callable[[], _R],
+    ) -> _R:
+        """Load a stage's result, or run it and keep the result."""
+        digests = self._digests(inputs)
+        if self.session.is_fresh(stage, digests, parameters):
+            return load(self.session.folder(stage))
+        started = perf_counter()
+        self._stage_warnings: list[str] = []
+        result = run()
+        seconds = perf_counter() - started
+        with self.session.writing(stage, inputs=digests, parameters=parameters, seconds=seconds) as folder:
+            result.save(folder)
+            if self._stage_warnings:
+                write_json(folder / WARNINGS_FILE, {"warnings": self._stage_warnings})
+        return result
+
+    def _in_worker(self, task: Task, stage: str, label: str) -> Any:
+        result, self._stage_warnings = self._pool.run([task], label, self._reporter)[0]
+        for sentence in self._stage_warnings:
+            self._reporter.warn(sentence)
+        return result
+
+    def _digests(self, stages: tuple[str, ...]) -> dict[str, str]:
+        digests = {}
+        for stage in stages:
+            record = self.session.record(stage)
+            if record is None:
+                raise SessionError(
+                    f"The session {self.session.path} holds no '{stage}' yet; "
+                    "import a scan with 'poursight import FOLDER --session DIR' first."
+                )
+            digests[stage] = record.digest
+        return digests
+
+    def _source(self) -> str:
+        return "mesh" if self.session.record("mesh") is not None else "reconstruction"
+
+    def _given_parts(self) -> CollisionModel | None:
+        folder = self.session.path / "mesh"
+        return CollisionModel.load(folder) if (folder / "collision.json").is_file() else None
+
+    def _imagination_settings(self) -> dict[str, Any]:
+        groups = self.parameters.model_dump(
+            include={"seed", "particle", "solver", "containability", "pouring"}
+        )
+        settings: dict[str, Any] = json.loads(json.dumps(groups))
+        settings["aabb_margin_m"] = self.parameters.collision.aabb_margin_m
+        settings["record_interval_s"] = self.parameters.evidence.record_interval_s
+        return settings
+
+    def _load_imagination(self) -> Imagination:
+        containability, pouring = self.session.folder("containability"), self.session.folder("pouring")
+        choice = read_json(pouring / "choice.json")["choice"]
+        records = [self.session.record(stage) for stage in ("containability", "pouring")]
+        seconds = [record.seconds if record else 0.0 for record in records]
+        return Imagination(
+            Containability.load(containability),
+            PourGrid.load(pouring) if choice is not None else None,
+            PourChoice.from_table(choice) if choice is not None else None,
+            *seconds,
+        )

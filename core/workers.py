@@ -1,0 +1,245 @@
+"""Worker processes: where physics and rendering run, so that a crash there is a message, not a lost program.
+
+A pool is started early and kept, because starting costs about a second. Every task is a module-level function
+with its arguments; results come back in the order of the tasks whatever the order of completion, so nothing
+depends on the number of workers. Cancelling is asked first (an event the tasks look at) and then enforced.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing.connection import wait as wait_for_handles
+from typing import Any, NoReturn
+
+from core.errors import Cancelled, WorkerError
+from core.progress import Reporter
+
+_POLL_S = 0.05
+_GRACE_S = 0.5
+_PROGRESS_SLOTS = 64
+
+
+@dataclass(frozen=True)
+class Task:
+    """A call to be made in a worker; `weight` is its share in the progress shown."""
+
+    function: Callable[..., Any]
+    arguments: tuple[Any, ...]
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class _Channel:
+    """What a worker shares with its parent."""
+
+    cancel: Any
+    fractions: Any
+
+
+_channel: _Channel | None = None  # set once per worker process, by its initializer
+_slot: int | None = None
+
+
+class WorkerPool:
+    """A few worker processes (spawned, so that they share no state), used as a context manager."""
+
+    def __init__(self, workers: int | None = None) -> None:
+        """Make a pool of `workers` processes, by default one for each processor this process may use."""
+        self.workers = workers or len(os.sched_getaffinity(0))
+        self._context = multiprocessing.get_context("spawn")
+        self._executor: ProcessPoolExecutor | None = None
+        self._processes: list[Any] = []
+        self._shared = _Channel(self._context.Event(), self._context.Array("d", _PROGRESS_SLOTS, lock=False))
+
+    def __enter__(self) -> WorkerPool:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
+
+    def start(self, *modules: str) -> None:
+        """Start the processes now, in the background, and let each import `modules`."""
+        executor = self._running()
+        for _ in range(self.workers):
+            executor.submit(_import_modules, modules)
+
+    def close(self) -> None:
+        """End the processes; a running task is killed."""
+        if self._executor is None:
+            return
+        executor, self._executor = self._executor, None
+        executor.shutdown(wait=False, cancel_futures=True)
+        for process in self._processes:
+            process.kill()
+        self._processes = []
+
+    def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
+        """Run all tasks and return their results in order.
+
+        Raises:
+            Cancelled: the reporter was asked to stop.
+            WorkerError: a worker process died.
+            Exception: whatever the first failing task raised.
+        """
+        self._shared.cancel.clear()
+        self._shared.fractions[:] = [0.0] * _PROGRESS_SLOTS
+        executor = self._running()
+        try:
+            with _interrupts_ignored_by_children():
+                futures = [
+                    executor.submit(_call, index if index < _PROGRESS_SLOTS else None, task)
+                    for index, task in enumerate(tasks)
+                ]
+                self._remember_processes()
+            self._wait(futures, tasks, stage, reporter)
+            return [future.result() for future in futures]
+        except BrokenProcessPool as error:
+            self.close()
+            raise WorkerError(
+                f"A worker process died during '{stage}' (killed, or out of memory?); run the command again, "
+                "with fewer --workers if memory is short."
+            ) from error
+        except Cancelled:
+            self._stop_tasks(futures)
+            raise
+        except BaseException:
+            for future in futures:
+                future.cancel()
+            self._shared.cancel.set()
+            raise
+
+    def _running(self) -> ProcessPoolExecutor:
+        if self._executor is None:
+            before = set(multiprocessing.active_children())
+            self._executor = ProcessPoolExecutor(
+                self.workers, self._context, initializer=_initialize, initargs=(self._shared,)
+            )
+            self._children_before = before
+            with _interrupts_ignored_by_children():
+                for _ in range(self.workers):
+                    self._executor.submit(os.getpid)
+                self._remember_processes()
+        return self._executor
+
+    def _remember_processes(self) -> None:
+        self._processes = [
+            child for child in multiprocessing.active_children() if child not in self._children_before
+        ]
+
+    def _wait(
+        self, futures: list[Future[Any]], tasks: Sequence[Task], stage: str, reporter: Reporter
+    ) -> None:
+        total = sum(task.weight for task in tasks)
+        pending = set(futures)
+        while pending:
+            reporter.raise_if_cancelled()
+            finished, pending = wait(pending, timeout=_POLL_S, return_when=FIRST_COMPLETED)
+            for future in finished:
+                future.result()  # a failure ends the run at once
+            reporter.progress(stage, self._done(futures, tasks), total)
+
+    def _done(self, futures: list[Future[Any]], tasks: Sequence[Task]) -> float:
+        done = 0.0
+        for index, (future, task) in enumerate(zip(futures, tasks, strict=True)):
+            if future.done():
+                done += task.weight
+            elif index < _PROGRESS_SLOTS:
+                done += task.weight * self._shared.fractions[index]
+        return done
+
+    def _stop_tasks(self, futures: list[Future[Any]]) -> None:
+        self._shared.cancel.set()
+        for future in futures:
+            future.cancel()
+        _, unfinished = wait(futures, timeout=_GRACE_S)
+        if unfinished:
+            self.close()
+
+
+def report_fraction(fraction: float) -> None:
+    """In a task: tell which fraction of it is done, and stop here if the parent asked to.
+
+    Raises:
+        Cancelled: the parent asked to stop.
+    """
+    if _channel is None:
+        return
+    if _channel.cancel.is_set():
+        raise Cancelled("Stopped on request.")
+    if _slot is not None:
+        _channel.fractions[_slot] = fraction
+
+
+class WorkerReporter(Reporter):
+    """The reporter a stage gets inside a worker: its progress goes to the parent, its warnings into a list."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.warnings: list[str] = []
+
+    def progress(self, stage: str, done: float, total: float) -> None:  # noqa: ARG002
+        """Pass the fraction on."""
+        report_fraction(done / total)
+
+    def warn(self, sentence: str) -> None:
+        """Keep the sentence for the parent."""
+        self.warnings.append(sentence)
+
+    def raise_if_cancelled(self) -> None:
+        """Raise `Cancelled` if the parent asked to stop."""
+        if _channel is not None and _channel.cancel.is_set():
+            raise Cancelled("Stopped on request.")
+
+
+def _call(slot: int | None, task: Task) -> Any:
+    global _slot
+    _slot = slot
+    return task.function(*task.arguments)
+
+
+def _import_modules(modules: tuple[str, ...]) -> None:
+    import importlib
+
+    for module in modules:
+        importlib.import_module(module)
+
+
+def _initialize(channel: _Channel) -> None:
+    """Prepare a worker: quiet on stdout, deaf to Ctrl-C, and gone when its parent is."""
+    global _channel
+    _channel = channel
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # PyBullet and its EGL plugin write to file descriptor 1 from C; that is where `--json -` goes.
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, 1)
+    threading.Thread(target=_die_with_parent, daemon=True).start()
+
+
+def _die_with_parent() -> NoReturn:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait_for_handles([parent.sentinel])
+    time.sleep(0.1)
+    os._exit(1)
+
+
+@contextmanager
+def _interrupts_ignored_by_children() -> Iterator[None]:
+    """Let processes spawned inside inherit an ignored SIGINT: Ctrl-C reaches the whole terminal group."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, handler)
