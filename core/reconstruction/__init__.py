@@ -1,0 +1,16 @@
+"""From a scan to the object's mesh: TSDF fusion, segmentation, and how well the poses agree."""
+
+from core.reconstruction.pose_health import PoseHealth, ViewHealth, measure_pose_health, measure_view_health
+from core.reconstruction.result import Reconstruction
+from core.reconstruction.stage import reconstruct
+from core.reconstruction.tsdf import TsdfVolume
+
+__all__ = [
+    "PoseHealth",
+    "Reconstruction",
+    "TsdfVolume",
+    "ViewHealth",
+    "measure_pose_health",
+    "measure_view_health",
+    "reconstruct",
+]

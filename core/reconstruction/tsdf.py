@@ -1,0 +1,136 @@
+"""Truncated signed distance volume, fused view by view (Curless & Levoy 1996; Sec. IV-A).
+
+The arithmetic is the released code's, in single precision and in its order, so that the result agrees with
+theirs to rounding.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from core.errors import StageError
+from core.geometry import BoolArray, FloatArray, IntArray
+from core.mesh import TriangleMesh
+from core.reconstruction.surface import extract_surface
+from core.scan.model import DepthImage, Intrinsics, RgbdFrame
+
+DistanceGrid = npt.NDArray[np.float32]
+
+MOST_VOXELS = 200_000_000
+"""About 1.4 GB of volume; what comes after needs as much again."""
+SMALLEST_DEPTH_M = 1e-4
+SURFACE_BAND = 0.2
+"""Share of the truncation within which an observed voxel counts as surface (released code)."""
+
+
+class TsdfVolume:
+    """A grid of signed distances, in units of the truncation, positive outside.
+
+    Voxel (i, j, k) has its centre at `origin_m + voxel_m * (i, j, k)` in the base frame.
+
+    Attributes:
+        distance: (X, Y, Z) float32 in [-1, 1]; 1 where nothing was fused yet.
+        weight: (X, Y, Z) uint16, in how many views the voxel was seen (in front of the surface or within the
+            truncation behind it).
+        hidden: (X, Y, Z) bool, True where some view measured a surface in front of the voxel and farther than
+            the truncation.
+    """
+
+    def __init__(
+        self, crop_min_m: npt.ArrayLike, crop_max_m: npt.ArrayLike, voxel_m: float, truncation_m: float
+    ) -> None:
+        self.origin_m: FloatArray = np.asarray(crop_min_m, dtype=float)
+        self.voxel_m = voxel_m
+        self.truncation_m = truncation_m
+        size_m = np.asarray(crop_max_m, dtype=float) - self.origin_m
+        shape = np.floor(size_m / voxel_m + 1e-6).astype(int)
+        if np.prod(shape, dtype=float) > MOST_VOXELS:
+            raise StageError(
+                f"The crop box holds {np.prod(shape, dtype=float) / 1e6:.0f} million voxels of "
+                f"{voxel_m * 1000:g} mm, more than {MOST_VOXELS // 1_000_000} million; "
+                "enlarge reconstruction.voxel_m or shrink the crop box."
+            )
+        self.distance: DistanceGrid = np.ones(shape, dtype=np.float32)
+        self.weight: npt.NDArray[np.uint16] = np.zeros(shape, dtype=np.uint16)
+        self.hidden: BoolArray = np.zeros(shape, dtype=np.bool_)
+
+    def integrate(self, frame: RgbdFrame, intrinsics: Intrinsics, max_depth_m: float) -> None:
+        """Fuse one view; depth beyond `max_depth_m` is ignored."""
+        _integrate(
+            self.distance,
+            self.weight,
+            self.hidden,
+            self.origin_m.astype(np.float32),
+            np.float32(self.voxel_m),
+            np.float32(self.truncation_m),
+            np.ascontiguousarray(frame.depth_m, dtype=np.float32),
+            intrinsics.matrix.astype(np.float32),
+            np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
+            np.float32(max_depth_m),
+        )
+
+    def mesh(self) -> TriangleMesh:
+        """Everything fused so far as a closed surface in the base frame; empty before anything was seen."""
+        return extract_surface(self.distance, self.origin_m, self.voxel_m)
+
+    def surface_voxels(self) -> IntArray:
+        """Indices (N, 3) of the voxels that were seen and lie next to the surface."""
+        return np.argwhere((np.abs(self.distance) < np.float32(SURFACE_BAND)) & (self.weight > 0))
+
+    def centers_m(self, indices: IntArray) -> FloatArray:
+        """Voxel centres (N, 3) in the base frame of indices (N, 3)."""
+        return self.origin_m + self.voxel_m * indices
+
+
+@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
+def _integrate(
+    distance: DistanceGrid,
+    weight: npt.NDArray[np.uint16],
+    hidden: BoolArray,
+    origin_m: npt.NDArray[np.float32],
+    voxel_m: np.float32,
+    truncation_m: np.float32,
+    depth_m: DepthImage,
+    camera: npt.NDArray[np.float32],
+    pose: npt.NDArray[np.float32],
+    max_depth_m: np.float32,
+) -> None:
+    """Fuse one view in place."""
+    height, width = depth_m.shape
+    one = np.float32(1.0)
+    for i in range(distance.shape[0]):
+        x = (origin_m[0] + np.float32(i) * voxel_m) - pose[0, 3]
+        for j in range(distance.shape[1]):
+            y = (origin_m[1] + np.float32(j) * voxel_m) - pose[1, 3]
+            # What a column of voxels shares; the sums keep the released code's order.
+            column_x = pose[0, 0] * x + pose[1, 0] * y
+            column_y = pose[0, 1] * x + pose[1, 1] * y
+            column_z = pose[0, 2] * x + pose[1, 2] * y
+            for k in range(distance.shape[2]):
+                z = (origin_m[2] + np.float32(k) * voxel_m) - pose[2, 3]
+                camera_z = column_z + pose[2, 2] * z
+                if camera_z <= 0:
+                    continue
+                camera_x = column_x + pose[2, 0] * z
+                camera_y = column_y + pose[2, 1] * z
+                u = camera[0, 0] * (camera_x / camera_z) + camera[0, 2]
+                v = camera[1, 1] * (camera_y / camera_z) + camera[1, 2]
+                if not (-0.5 < u < width and -0.5 < v < height):
+                    continue
+                # Half a pixel rounds away from zero; the sum is double, because in single 0.49999997 gives 1.
+                column, row = int(u + 0.5), int(v + 0.5)
+                if column >= width or row >= height:
+                    continue
+                measured = depth_m[row, column]
+                if measured <= SMALLEST_DEPTH_M or measured > max_depth_m:
+                    continue
+                difference = measured - camera_z
+                if difference <= -truncation_m:
+                    hidden[i, j, k] = True
+                    continue
+                before = np.float32(weight[i, j, k])
+                weight[i, j, k] += np.uint16(1)
+                value = min(one, difference / truncation_m)
+                distance[i, j, k] = (distance[i, j, k] * before + value) / (before + one)

@@ -1,0 +1,7 @@
+"""Scans: colour and depth images with poses, read from and written to the authors' layout."""
+
+from core.scan.authors_layout import read_scan
+from core.scan.model import Intrinsics, RgbdFrame, Scan
+from core.scan.writing import write_camera, write_frame, write_scan
+
+__all__ = ["Intrinsics", "RgbdFrame", "Scan", "read_scan", "write_camera", "write_frame", "write_scan"]

@@ -1,0 +1,92 @@
+"""Poses and intrinsics as text files, checked."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import InputError
+from core.geometry import FloatArray, rotation_error
+from core.scan.model import Intrinsics
+
+ROTATION_TOLERANCE = 1e-3
+"""Largest entry of |R R^T - I|: passes poses written with four digits, refuses everything that is none."""
+FARTHEST_CAMERA_M = 10.0
+"""No robot arm carries its camera farther; poses in millimetres are found by it."""
+
+
+def read_pose(path: Path) -> FloatArray:
+    """Read `T_base_camera` (4, 4) in metres.
+
+    Raises:
+        InputError: the file cannot be read or holds no pose.
+    """
+    pose = _read_matrix(path, 4, "pose")
+    if np.abs(pose[3] - [0.0, 0.0, 0.0, 1.0]).max() > 1e-6:
+        raise InputError(f"The last row of the pose in {path} must be 0 0 0 1; write camera-to-base poses.")
+    if np.abs(pose[:3, :3]).max() > 2.0 or rotation_error(pose[:3, :3]) > ROTATION_TOLERANCE:
+        raise InputError(
+            f"The upper left 3x3 part of the pose in {path} is no rotation; "
+            "export the camera-to-base pose of this view again or delete the view's three files."
+        )
+    if np.abs(pose[:3, 3]).max() > FARTHEST_CAMERA_M:
+        raise InputError(
+            f"The pose in {path} puts the camera more than {FARTHEST_CAMERA_M:.0f} m from the base; "
+            "write its translation in metres."
+        )
+    return pose
+
+
+def read_intrinsics(path: Path) -> Intrinsics:
+    """Read the camera matrix (3, 3) in pixels.
+
+    Raises:
+        InputError: the file cannot be read or holds no camera matrix.
+    """
+    matrix = _read_matrix(path, 3, "camera matrix")
+    expected = np.array([[matrix[0, 0], 0, matrix[0, 2]], [0, matrix[1, 1], matrix[1, 2]], [0, 0, 1]])
+    if matrix[0, 0] <= 0 or matrix[1, 1] <= 0 or np.abs(matrix - expected).max() > 1e-6:
+        raise InputError(
+            f"{path} holds no pinhole camera matrix; write it as 'fx 0 cx', '0 fy cy', '0 0 1' in pixels."
+        )
+    return Intrinsics(*(float(matrix[index]) for index in ((0, 0), (1, 1), (0, 2), (1, 2))))
+
+
+def check_intrinsics_fit(intrinsics: Intrinsics, width: int, height: int, path: Path) -> None:
+    """Raise `InputError` if the camera matrix from `path` belongs to images of another size."""
+    # Half or twice the resolution moves the principal point by a quarter of the image or more.
+    fits = abs(intrinsics.cx / width - 0.5) < 0.25 and abs(intrinsics.cy / height - 0.5) < 0.25
+    if not fits:
+        raise InputError(
+            f"The camera matrix in {path} has its principal point at ({intrinsics.cx:g}, {intrinsics.cy:g}) "
+            f"but the images are {width} x {height}; use the intrinsics of this resolution."
+        )
+
+
+def matrix_text(matrix: FloatArray) -> str:
+    """Return rows of numbers that read back to the same doubles."""
+    return "".join(" ".join(repr(float(value)) for value in row) + "\n" for row in matrix)
+
+
+def _read_matrix(path: Path, size: int, what: str) -> FloatArray:
+    try:
+        rows = [line.split() for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"The {what} in {path} cannot be read ({error}); copy the file again.") from error
+    if [len(row) for row in rows] != [size] * size:
+        raise InputError(f"{path} must hold a {size}x{size} {what}, {size} numbers in each of {size} lines.")
+    try:
+        values = [[float(word) for word in row] for row in rows]
+    except ValueError as error:
+        raise InputError(
+            f"The {what} in {path} holds something that is no number ({error}); write {size}x{size} numbers."
+        ) from error
+    if not all(math.isfinite(value) for row in values for value in row):
+        raise InputError(
+            f"The {what} in {path} holds NaN or infinity; export it again or delete the view's three files."
+            if size == 4
+            else f"The {what} in {path} holds NaN or infinity; write the calibrated values in pixels."
+        )
+    return np.array(values)

@@ -1,0 +1,63 @@
+"""What a scan is: colour and depth images with the pose each was taken from (Sec. IV-A)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry import FloatArray, transform_points
+
+ColorImage = npt.NDArray[np.uint8]
+DepthImage = npt.NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """A pinhole camera in pixels, `u = fx x / z + cx`, `v = fy y / z + cy`; z forward, y down."""
+
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+    @property
+    def matrix(self) -> FloatArray:
+        """Camera matrix (3, 3)."""
+        return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+
+@dataclass(frozen=True)
+class RgbdFrame:
+    """One view.
+
+    Attributes:
+        name: what its files are called, such as `frame-000150`.
+        color: (H, W, 3) uint8, RGB.
+        depth_m: (H, W) float32, distance along the optical axis; 0 where nothing was measured.
+        T_base_camera: (4, 4), camera points to the robot's base frame.
+    """
+
+    name: str
+    color: ColorImage
+    depth_m: DepthImage
+    T_base_camera: FloatArray
+
+    def points_m(self, intrinsics: Intrinsics, *, max_depth_m: float, stride: int = 1) -> FloatArray:
+        """Measured points (N, 3) in the base frame, of every `stride`-th row and column."""
+        depth = self.depth_m[::stride, ::stride].astype(float)
+        rows, columns = np.nonzero((depth > 0) & (depth <= max_depth_m))
+        z = depth[rows, columns]
+        x = (columns * stride - intrinsics.cx) / intrinsics.fx * z
+        y = (rows * stride - intrinsics.cy) / intrinsics.fy * z
+        return transform_points(self.T_base_camera, np.column_stack([x, y, z]))
+
+
+@dataclass(frozen=True)
+class Scan:
+    """All views of one object; `platform_height_m` is the transparent platform's top in the base frame."""
+
+    frames: tuple[RgbdFrame, ...]
+    intrinsics: Intrinsics
+    platform_height_m: float | None = None

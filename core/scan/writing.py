@@ -1,0 +1,74 @@
+"""Writing scans in the authors' layout, each file whole or not at all."""
+
+from __future__ import annotations
+
+import io
+import json
+from contextlib import suppress
+from pathlib import Path
+
+from PIL import Image
+
+from core.errors import SessionError
+from core.geometry import AnyArray
+from core.scan.authors_layout import FACTS_FILE, FRAMES_FOLDER, INTRINSICS_FILE
+from core.scan.images import depth_to_millimetres
+from core.scan.matrices import matrix_text
+from core.scan.model import Intrinsics, RgbdFrame, Scan
+
+
+def write_scan(scan: Scan, folder: Path) -> None:
+    """Write a whole scan so that `read_scan` gives it back (depth rounded to a millimetre).
+
+    Raises:
+        SessionError: a file cannot be written.
+    """
+    write_camera(scan.intrinsics, scan.platform_height_m, folder)
+    for frame in scan.frames:
+        write_frame(frame, folder)
+
+
+def write_camera(intrinsics: Intrinsics, platform_height_m: float | None, folder: Path) -> None:
+    """Write what all views share: the camera matrix and, when known, the platform's height.
+
+    Raises:
+        SessionError: a file cannot be written.
+    """
+    _write_whole(folder / INTRINSICS_FILE, matrix_text(intrinsics.matrix).encode())
+    if platform_height_m is None:
+        (folder / FACTS_FILE).unlink(missing_ok=True)
+    else:
+        facts = json.dumps({"platform_height_m": platform_height_m}, allow_nan=False)
+        _write_whole(folder / FACTS_FILE, facts.encode() + b"\n")
+
+
+def write_frame(frame: RgbdFrame, folder: Path) -> None:
+    """Write one view into the scan `folder` (its images go to `rgbd`); the pose comes last.
+
+    Raises:
+        SessionError: a file cannot be written.
+    """
+    place = folder / FRAMES_FOLDER
+    _write_whole(place / f"{frame.name}.color.png", _png(frame.color))
+    _write_whole(place / f"{frame.name}.depth.png", _png(depth_to_millimetres(frame.depth_m)))
+    _write_whole(place / f"{frame.name}.pose.txt", matrix_text(frame.T_base_camera).encode())
+
+
+def _png(pixels: AnyArray) -> bytes:
+    buffer = io.BytesIO()
+    Image.fromarray(pixels).save(buffer, format="PNG", compress_level=1)
+    return buffer.getvalue()
+
+
+def _write_whole(path: Path, content: bytes) -> None:
+    part = path.with_name(f".{path.name}.part")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(content)
+        part.replace(path)
+    except OSError as error:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise SessionError(
+            f"{path} cannot be written ({error.strerror}); free space or choose another folder."
+        ) from error

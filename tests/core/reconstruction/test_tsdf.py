@@ -1,0 +1,72 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.errors import StageError
+from core.geometry import look_at
+from core.reconstruction import TsdfVolume
+from core.scan import Intrinsics, RgbdFrame
+
+CAMERA = Intrinsics(200.0, 200.0, 49.5, 39.5)
+
+
+def wall(distance_m: float, name: str = "frame-000000") -> RgbdFrame:
+    """A wall that fills the image, seen from the origin along +x."""
+    depth_m = np.full((80, 100), distance_m, dtype=np.float32)
+    return RgbdFrame(name, np.zeros((80, 100, 3), np.uint8), depth_m, look_at([0, 0, 0], [1, 0, 0]))
+
+
+@pytest.fixture
+def volume() -> TsdfVolume:
+    return TsdfVolume((0.4, -0.05, -0.05), (0.6, 0.05, 0.05), 0.005, 0.02)
+
+
+def test_distance_rises_linearly_towards_the_camera_within_the_truncation(volume):
+    volume.integrate(wall(0.499), CAMERA, 6.0)
+    x_m = 0.4 + 0.005 * np.arange(40)
+    seen = x_m < 0.519
+    expected = np.where(seen, np.clip((0.499 - x_m) / 0.02, -1, 1), 1.0)
+    assert volume.distance[:, 10, 10] == pytest.approx(expected, abs=1e-4)
+    assert (volume.weight[:, 10, 10] > 0).tolist() == seen.tolist()
+    assert volume.hidden[:, 10, 10].tolist() == (~seen).tolist()
+
+
+def test_views_are_averaged(volume):
+    for distance_m in (0.498, 0.502, 0.503):
+        volume.integrate(wall(distance_m), CAMERA, 6.0)
+    assert volume.weight[20, 10, 10] == 3
+    assert volume.distance[20, 10, 10] == pytest.approx(0.001 / 0.02, abs=1e-4)
+
+
+def test_the_mesh_grows_view_by_view_and_starts_empty(volume):
+    assert len(volume.mesh().faces) == 0
+    volume.integrate(wall(0.5), CAMERA, 6.0)
+    first = volume.mesh()
+    assert len(first.faces) > 0
+    assert first.aabb_min_m[0] == pytest.approx(0.5, abs=1e-3)
+    volume.integrate(wall(0.49), CAMERA, 6.0)
+    assert volume.mesh().aabb_min_m[0] == pytest.approx(0.495, abs=1e-3)
+
+
+def test_no_measurement_and_far_depth_say_nothing(volume):
+    volume.integrate(wall(0.0), CAMERA, 6.0)
+    volume.integrate(wall(0.5), CAMERA, 0.45)
+    assert not volume.weight.any()
+    assert not volume.hidden.any()
+
+
+def test_the_order_of_views_changes_rounding_only(volume):
+    distances = [0.49, 0.5, 0.505]
+    other = TsdfVolume((0.4, -0.05, -0.05), (0.6, 0.05, 0.05), 0.005, 0.02)
+    for distance_m in distances:
+        volume.integrate(wall(distance_m), CAMERA, 6.0)
+    for distance_m in reversed(distances):
+        other.integrate(wall(distance_m), CAMERA, 6.0)
+    assert np.array_equal(volume.weight, other.weight)
+    assert volume.distance == pytest.approx(other.distance, abs=1e-5)
+
+
+def test_a_grid_that_fits_no_memory_names_the_voxel():
+    with pytest.raises(StageError, match=r"1000 million voxels of 1 mm.*reconstruction\.voxel_m"):
+        TsdfVolume((0, 0, 0), (1, 1, 1), 0.001, 0.02)
