@@ -1,0 +1,59 @@
+"""What a report tells."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+from core.imagination.results import Containability, PourChoice, PourGrid
+from core.mesh import TriangleMesh
+from core.parameters import Parameters
+
+if TYPE_CHECKING:  # only its numbers are needed here, not the fusion
+    from core.reconstruction.result import Reconstruction
+
+Media: TypeAlias = bytes | Path
+"""A picture (PNG or JPEG) or a film (MP4): its content, or the file that holds it."""
+
+
+@dataclass(frozen=True)
+class ReportContent:
+    """All that goes into a report; what is None or empty is said to be missing, with the reason.
+
+    Attributes:
+        name: of the session.
+        created: ISO 8601 time of the session.
+        preset_name: the preset the parameters started from.
+        preset: that preset's parameters.
+        parameters: the parameters used.
+        containability: the verdict and its evidence.
+        surface: the object's mesh, reconstructed or given.
+        reconstruction: None when the mesh was given.
+        pours: None when none were imagined.
+        choice: None when there is no pour to choose.
+        scan_pictures: caption to picture, small; one a view.
+        pictures: caption to picture; wide ones get a row of their own.
+        films: caption to film.
+        seconds: stage to how long it took.
+        versions: program to version.
+        warnings: sentences the stages gave.
+    """
+
+    name: str
+    created: str
+    preset_name: str
+    preset: Parameters
+    parameters: Parameters
+    containability: Containability
+    surface: TriangleMesh
+    reconstruction: Reconstruction | None = None
+    pours: PourGrid | None = None
+    choice: PourChoice | None = None
+    scan_pictures: Mapping[str, Media] = field(default_factory=dict)
+    pictures: Mapping[str, Media] = field(default_factory=dict)
+    films: Mapping[str, Media] = field(default_factory=dict)
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
+    warnings: tuple[str, ...] = ()

@@ -1,0 +1,123 @@
+"""The report's page: one HTML file that needs nothing else."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from core.imagination.results import Containability
+from core.report.content import ReportContent
+from core.report.footprint import footprint_plot
+from core.report.media import data_uri, embed_films, embed_pictures
+from core.report.pour_map import pour_map
+from core.report.sentences import has_spread, omega_texts, pours_sentence, verdict_sentence
+from core.report.tables import (
+    MM,
+    health_sentence,
+    object_facts,
+    parameter_rows,
+    pour_rows,
+    time_rows,
+    view_rows,
+)
+from core.resources import RESOURCES
+from core.session import explained
+
+TEMPLATE = "report.html.j2"
+
+
+def write_report(content: ReportContent, path: Path) -> None:
+    """Write the report as one self-contained HTML file, whole or not at all.
+
+    Raises:
+        SessionError: the disk is full or the folder may not be written.
+    """
+    page = render_page(content)
+    unfinished = path.with_name(f".{path.name}")
+    with explained(path.parent):
+        try:
+            unfinished.write_text(page, encoding="utf-8")
+            unfinished.replace(path)
+        finally:
+            unfinished.unlink(missing_ok=True)
+
+
+def render_page(content: ReportContent) -> str:
+    """Return the page's HTML; all text in it is escaped."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader(RESOURCES / "report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(TEMPLATE).render(_page_data(content))
+
+
+def _page_data(content: ReportContent) -> dict[str, Any]:
+    found = content.containability
+    return {
+        "content": content,
+        "created": _readable_time(content.created),
+        "found": found,
+        "verdict": verdict_sentence(found),
+        "pours_said": pours_sentence(found, content.pours, content.choice),
+        "footprint_plot": _both(footprint_plot(found), footprint_plot(found, dark=True)),
+        "pictures": embed_pictures(content.pictures),
+        "films": embed_films(content.films),
+        "scan_pictures": embed_pictures(content.scan_pictures),
+        "object_facts": object_facts(content.surface, content.reconstruction),
+        "parameter_rows": parameter_rows(content.parameters, content.preset),
+        "time_rows": time_rows(dict(content.seconds)),
+        "total_s": f"{sum(content.seconds.values()):.1f}",
+        **_omega_data(found),
+        **_pour_data(content),
+        **_reconstruction_data(content),
+    }
+
+
+def _omega_data(found: Containability) -> dict[str, Any]:
+    omega, threshold = omega_texts(found)
+    return {
+        "omega_percent": round(100 * found.omega, 1),
+        "threshold_percent": round(100 * min(found.omega_threshold, 1.0), 1),
+        "omega_said": f"Omega {omega}, threshold {threshold}",
+    }
+
+
+def _pour_data(content: ReportContent) -> dict[str, Any]:
+    grid = content.pours
+    if grid is None:
+        return {"pour_map": None}
+    light = pour_map(grid, content.choice, content.containability)
+    dark = pour_map(grid, content.choice, content.containability, dark=True)
+    return {
+        "pour_map": _both(light, dark),
+        "pour_rows": pour_rows(grid, content.choice),
+        "indents": [f"{indent_m * MM:.0f}" for indent_m in grid.indent_m],
+        "spread_said": f"; ± over {grid.n_in.shape[2]} packings of the cup" if has_spread(grid) else "",
+    }
+
+
+def _reconstruction_data(content: ReportContent) -> dict[str, Any]:
+    if content.reconstruction is None:
+        return {}
+    return {
+        "health_said": health_sentence(content.reconstruction),
+        "view_rows": view_rows(content.reconstruction),
+    }
+
+
+def _readable_time(created: str) -> str:
+    try:
+        return datetime.fromisoformat(created).astimezone(timezone.utc).strftime("%d %B %Y, %H:%M UTC")
+    except ValueError:
+        return created
+
+
+def _both(light: bytes, dark: bytes) -> dict[str, str]:
+    """Return a plot for light pages and paper, and for dark ones."""
+    return {"light": data_uri("image/png", light), "dark": data_uri("image/png", dark)}
