@@ -1,8 +1,7 @@
-"""The answer of an imagination: the JSON of the command-line contract, and in words."""
+"""The answer of an imagination as the JSON of the command-line contract."""
 
 from __future__ import annotations
 
-from math import degrees
 from typing import Any
 
 from core.imagination.imagine import Imagination
@@ -29,22 +28,3 @@ def answer_table(result: Imagination, parameters: Parameters) -> dict[str, Any]:
         "seed": parameters.seed,
         "parameters": flatten(parameters),
     }
-
-
-def verdict_lines(result: Imagination) -> list[str]:
-    """Return the verdict and the chosen pour as sentences."""
-    found = result.containability
-    verdict = "Open container" if found.is_open_container else "Not an open container"
-    lines = [
-        f"{verdict}: {found.n_in} of {found.n_drop} candies stayed "
-        f"(Omega {found.omega:.3f}, the threshold is {found.omega_threshold:.2f})."
-    ]
-    if result.grid is not None and result.choice is not None:
-        i, j = result.choice.i, result.choice.j
-        p, spread = result.grid.p[i, j], result.grid.p_spread[i, j]
-        lines.append(
-            f"Pour from direction {i} ({degrees(result.choice.theta_rad):.0f} degrees), "
-            f"{100 * result.grid.indent_m[j]:.1f} cm from the footprint's centre: "
-            f"{100 * p:.0f} +- {100 * spread:.0f} % of {result.grid.n_pour} candies land inside."
-        )
-    return lines

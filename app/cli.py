@@ -1,4 +1,4 @@
-"""The command line: everything the program does, without a window (the contract is in docs/command-line.md)."""
+"""The command line: everything the program does, without a window (docs/command-line.md is the contract)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.errors import PoursightError
 
 app = typer.Typer(
     name="poursight",
-    help="Can I pour into it? Scan an unknown object, imagine by physics whether it contains, and where to pour.",
+    help="Can I pour into it? Scan an unknown object, imagine whether it contains, and where to pour.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,

@@ -14,13 +14,14 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from app.answer import answer_table, verdict_lines
+from app.answer import answer_table
 from app.terminal import TerminalReporter
 from core.errors import InputError, SessionError
 from core.files import read_json, write_json
-from core.imagination.imagine import WORKER_MODULE
+from core.imagination.imagine import WORKER_MODULE, Imagination
 from core.parameters import Parameters, apply_settings, describe, difference, flatten, load_preset
 from core.pipeline import Pipeline
+from core.report import pours_sentence, verdict_sentence
 from core.session import Session
 from core.workers import WorkerPool
 
@@ -98,7 +99,7 @@ def imagine(
         return
     if json_file is not None:
         _write_answer(json_file, table)
-    print("\n".join(verdict_lines(result)))
+    _print_verdict(result)
 
 
 def report(session_folder: Path, workers: int | None) -> None:
@@ -117,7 +118,7 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
         _simulated_scan(pipeline, name, mesh)
         result = pipeline.imagination()
         path = pipeline.report()
-    print("\n".join(verdict_lines(result)))
+    _print_verdict(result)
     print(f"Report: {path}")
 
 
@@ -157,8 +158,13 @@ def _working(
         _print_difference(preset, chosen)
         session = Session.open(folder) if existing else Session.create_or_open(folder)
         with session:
-            session.write_json(PARAMETERS_FILE, {"preset": preset, "parameters": changes})
+            write_json(folder / PARAMETERS_FILE, {"preset": preset, "parameters": changes})
             yield Pipeline(session, chosen, pool, reporter, preset)
+
+
+def _print_verdict(result: Imagination) -> None:
+    print(verdict_sentence(result.containability))
+    print(pours_sentence(result.containability, result.grid, result.choice))
 
 
 def _print_difference(preset: str, parameters: Parameters) -> None:

@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from core.errors import PoursightError
-from core.imagination.rendering import renderer_name
+from core.imagination.rendering.doctor import renderer_name
 from core.progress import Reporter
 from core.workers import Task, WorkerPool
 

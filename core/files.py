@@ -13,8 +13,13 @@ from core.geometry import AnyArray
 
 
 def write_json(path: Path, table: dict[str, Any]) -> None:
-    """Write a table as JSON for people and programs; NaN and infinity are refused."""
-    path.write_text(json.dumps(table, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    """Write a table as JSON for people and programs, whole or not at all; NaN and infinity are refused."""
+    unfinished = path.with_name(f".{path.name}.part")
+    try:
+        unfinished.write_text(json.dumps(table, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def read_json(path: Path) -> dict[str, Any]:

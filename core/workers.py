@@ -7,6 +7,7 @@ depends on the number of workers. Cancelling is asked first (an event the tasks 
 
 from __future__ import annotations
 
+import importlib
 import multiprocessing
 import os
 import signal
@@ -207,8 +208,6 @@ def _call(slot: int | None, task: Task) -> Any:
 
 
 def _import_modules(modules: tuple[str, ...]) -> None:
-    import importlib
-
     for module in modules:
         importlib.import_module(module)
 
@@ -218,7 +217,7 @@ def _initialize(channel: _Channel) -> None:
     global _channel
     _channel = channel
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # PyBullet and its EGL plugin write to file descriptor 1 from C; that is where `--json -` goes.
+    # PyBullet and its EGL plugin write to file descriptor 1 from C; people pipe what is printed there.
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
     threading.Thread(target=_die_with_parent, daemon=True).start()

@@ -8,21 +8,21 @@ taken out), the object moved kinematically, and finer steps only while a particl
 from __future__ import annotations
 
 from functools import cache
-from math import hypot
+from math import ceil, hypot
 
 import numpy as np
-import pybullet as bullet
 
 from core.errors import WorkerError
 from core.geometry import FloatArray
 from core.imagination.body import BodyFile
+from core.imagination.engine import bullet
 from core.imagination.particle_shape import ellipsoid_hull_m
 from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
 
 GRAVITY_M_S2 = 9.81
 CHECK_STEPS = 4
 """Steps between two looks at the particles for those that fell or are fast."""
-_FALLEN_MARGIN_M = 0.02
+_REGION_MARGIN_M = 0.015
 _DRIVEN_MASS_KG = 1e4
 
 
@@ -43,16 +43,20 @@ class BulletWorld:
         solver: SolverParameters,
         particle: ParticleParameters,
         contact: ContactParameters,
-        floor_m: float,
+        region_m: FloatArray,
     ) -> None:
-        """Start empty; particles below `floor_m` are taken out."""
+        """Start empty; `region_m` (2, 3) is the box that holds all bodies.
+
+        Particles that fell below it are taken out, and only those in it count as fast: elsewhere there is
+        nothing to slip through.
+        """
         self._solver = solver
         self._particle = particle
         self._contact = contact
-        self._fallen_below_m = floor_m - _FALLEN_MARGIN_M
+        self._region_m = (region_m + [[-_REGION_MARGIN_M], [_REGION_MARGIN_M]]).tolist()
         self._fast_m_s = min(particle.height_m, particle.diameter_m) / 2 * solver.rate_hz
         self._client = _server()
-        self._substeps = 1
+        self._substeps = 0
         self._steps = 0
         self.particle_ids: list[int | None] = []
         bullet.resetSimulation(physicsClientId=self._client)
@@ -185,16 +189,26 @@ class BulletWorld:
         return max((hypot(*velocity) for velocity in velocities), default=0.0)
 
     def _look_after_particles(self) -> None:
+        low, high = self._region_m
+        top_speed_m_s = 0.0
         for index, body_id in enumerate(self.particle_ids):
-            if body_id is not None and self.height_m(index) < self._fallen_below_m:
+            if body_id is None:
+                continue
+            (x, y, z), _ = bullet.getBasePositionAndOrientation(body_id, physicsClientId=self._client)
+            if z < low[2]:
                 self.remove_particle(index)
-        if self._solver.substeps > 1:
-            substeps = self._solver.substeps if self.top_speed_m_s() > self._fast_m_s else 1
-            if substeps != self._substeps:
-                self._substeps = substeps
-                bullet.setPhysicsEngineParameter(
-                    numSubSteps=substeps if substeps > 1 else 0, physicsClientId=self._client
-                )
+            elif self._solver.substeps > 1 and low[0] < x < high[0] and low[1] < y < high[1] and z < high[2]:
+                velocity, _ = bullet.getBaseVelocity(body_id, physicsClientId=self._client)
+                top_speed_m_s = max(top_speed_m_s, hypot(*velocity))
+        self._set_substeps(min(ceil(top_speed_m_s / self._fast_m_s), self._solver.substeps))
+
+    def _set_substeps(self, substeps: int) -> None:
+        """Compute each step in so many parts that no particle moves on by more than half its thickness."""
+        if substeps != self._substeps:
+            self._substeps = substeps
+            bullet.setPhysicsEngineParameter(
+                numSubSteps=substeps if substeps > 1 else 0, physicsClientId=self._client
+            )
 
     def _add_body(self, body: BodyFile, restitution: float, mass_kg: float) -> int:
         shape = bullet.createCollisionShape(

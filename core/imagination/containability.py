@@ -53,7 +53,7 @@ def _imagine_drop(target: ObjectAtRest, parameters: Parameters) -> Containabilit
     record_steps = max(round(parameters.evidence.record_interval_s * rate_hz), 1)
     recorder = Recorder(len(starts))
 
-    with BulletWorld(parameters.solver, parameters.particle, settings.contact, target.aabb_m[0, 2]) as world:
+    with BulletWorld(parameters.solver, parameters.particle, settings.contact, target.aabb_m) as world:
         body_id = world.add_driven_body(target.body, settings.contact.restitution)
         for start in starts:
             world.add_particle(np.array([*start, 0, 0, 0, 1]))

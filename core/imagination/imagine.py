@@ -19,7 +19,7 @@ from core.parameters import Parameters
 from core.progress import Reporter
 from core.workers import WorkerPool
 
-WORKER_MODULE = "core.imagination.pours"
+WORKER_MODULE = "core.imagination.preload"
 """What workers import before their first task."""
 
 
@@ -43,7 +43,7 @@ def imagine(
         StageError: the object is smaller than a candy, or the cup cannot hold N_pour.
     """
     cup = cup_parts(parameters.pouring.cup)
-    with body_files(object=(model.parts, model.is_concave), cup=(cup, False)) as files:
+    with body_files(object=(model.parts, not model.is_convex), cup=(cup, False)) as files:
         target = object_at_rest(model, files["object"], parameters)
         started = perf_counter()
         # The cup runs need nothing of the object: they fill the core that the drop leaves idle.

@@ -26,6 +26,7 @@ _SLOT_PITCH = 1.15
 _FREE_AT_MOUTH = 0.1
 """Share of the cup's length kept free at its mouth, so that nothing falls out before the turn."""
 _REPORT_STEPS = 25
+_ANYWHERE_M = np.array([[-1.0] * 3, [1.0] * 3])
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ def _run_cup(cup_body: BodyFile, parameters: Parameters, packing: int) -> CupRun
     release_steps = np.full(n_pour, -1)
     poses, velocities = np.zeros((n_pour, 7)), np.zeros((n_pour, 6))
     recorder = Recorder(n_pour)
-    with BulletWorld(parameters.solver, parameters.particle, pouring.contact, -1.0) as world:
+    with BulletWorld(parameters.solver, parameters.particle, pouring.contact, _ANYWHERE_M) as world:
         cup = PouringCup(world, cup_body, parameters, np.zeros(3), 0.0)
         for start in pack_cup(parameters, packing):
             world.add_particle(np.array([*start, 0, 0, 0, 1]))

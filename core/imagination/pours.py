@@ -61,7 +61,7 @@ def _replay(
     frames: list[tuple[int, FloatArray]] = []
 
     with BulletWorld(
-        parameters.solver, parameters.particle, parameters.pouring.contact, target.aabb_m[0, 2]
+        parameters.solver, parameters.particle, parameters.pouring.contact, target.aabb_m
     ) as world:
         world.add_fixed_body(target.body, parameters.pouring.contact.restitution)
         first = run.release_steps[order[0]] if order else steps
@@ -141,8 +141,10 @@ def _pour_fully(
     steps = round(pour_duration_s(pouring) * rate_hz)
     record_steps = max(round(parameters.evidence.record_interval_s * rate_hz), 1)
     recorder = Recorder(pouring.n_pour)
+    reach = np.array([1.0, 1.0, 0.0]) * pouring.cup.length_m
+    around = np.array([target.aabb_m[0] - reach, target.aabb_m[1] + pouring.cup.length_m])
     T_world_E = make_pose(rotation_z(pour.theta_rad), pour.pivot_m)
-    with BulletWorld(parameters.solver, parameters.particle, pouring.contact, target.aabb_m[0, 2]) as world:
+    with BulletWorld(parameters.solver, parameters.particle, pouring.contact, around) as world:
         world.add_fixed_body(target.body, pouring.contact.restitution)
         cup = PouringCup(world, cup_body, parameters, pour.pivot_m, pour.theta_rad)
         for start in transform_points(T_world_E, pack_cup(parameters, packing)):

@@ -8,19 +8,24 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, Protocol, TypeVar
 
-from core.collision import CollisionModel
+from core.collision import CollisionModel, from_parts
 from core.errors import SessionError
 from core.files import read_json, write_json
 from core.imagination.cup import cup_mesh
 from core.imagination.imagine import Imagination, imagine
-from core.imagination.rendering import Evidence, render_evidence
+from core.imagination.rendering.evidence import Evidence
+from core.imagination.rendering.render import render_evidence
 from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
-from core.mesh_file import read_mesh, read_mesh_parts, write_mesh
-from core.parameters import Parameters
+from core.mesh_file import read_mesh, read_mesh_parts
+from core.mesh_topology import is_convex, join
+from core.parameters import Parameters, load_preset
 from core.pipeline.jobs import collision_job, reconstruction_job
+from core.pipeline.report_content import gather
+from core.ply import read_ply, write_ply
 from core.progress import Reporter
 from core.reconstruction import Reconstruction
+from core.report import write_report
 from core.scan import Scan, read_scan, write_scan
 from core.session import Session
 from core.workers import Task, WorkerPool
@@ -35,6 +40,30 @@ class _Result(Protocol):
 _R = TypeVar("_R", bound=_Result)
 
 
+class _Keeping(Reporter):
+    """Passes everything on and keeps the warnings of the running stage for its folder."""
+
+    def __init__(self, face: Reporter) -> None:
+        super().__init__()
+        self._face = face
+        self._warnings: list[str] = []
+
+    def progress(self, stage: str, done: float, total: float) -> None:
+        self._face.progress(stage, done, total)
+
+    def warn(self, sentence: str) -> None:
+        self._warnings.append(sentence)
+        self._face.warn(sentence)
+
+    def raise_if_cancelled(self) -> None:
+        self._face.raise_if_cancelled()
+
+    def take_warnings(self) -> list[str]:
+        """Return the sentences since the last call."""
+        taken, self._warnings = self._warnings, []
+        return taken
+
+
 class Pipeline:
     """Runs the stages of one session with one set of parameters; the session must be held (`with session`).
 
@@ -42,12 +71,19 @@ class Pipeline:
     """
 
     def __init__(
-        self, session: Session, parameters: Parameters, pool: WorkerPool, reporter: Reporter
+        self,
+        session: Session,
+        parameters: Parameters,
+        pool: WorkerPool,
+        reporter: Reporter,
+        preset: str = "default",
     ) -> None:
+        """`preset` is what the parameters started from; the report shows the difference."""
         self.session = session
         self.parameters = parameters
+        self.reporter = _Keeping(reporter)
         self._pool = pool
-        self._reporter = reporter
+        self._preset = preset
 
     def import_scan(self, folder: Path) -> Scan:
         """Take over a scan in the authors' layout.
@@ -55,12 +91,13 @@ class Pipeline:
         Raises:
             InputError: the scan cannot be used as it is.
         """
-        return self.keep_scan(read_scan(folder, self._reporter), {"source": str(folder.resolve())})
+        return self.keep_scan(read_scan(folder, self.reporter), {"source": str(folder.resolve())})
 
     def keep_scan(self, scan: Scan, origin: dict[str, Any]) -> Scan:
         """Make `scan` the session's scan; `origin` says where it is from."""
         with self.session.writing("scan", inputs={}, parameters=origin) as stage:
             write_scan(scan, stage)
+            self._keep_warnings(stage)
         return scan
 
     def import_mesh(self, path: Path) -> TriangleMesh:
@@ -68,13 +105,20 @@ class Pipeline:
 
         Raises:
             InputError: the mesh cannot be used as it is.
+            SessionError: the session holds a scan.
         """
-        mesh = read_mesh(path, self._reporter)
-        parts = read_mesh_parts(path)
+        if self.session.record("scan") is not None:
+            raise SessionError(
+                f"The session {self.session.path} holds a scan; give another --session for the mesh {path}."
+            )
+        parts = read_mesh_parts(path, self.reporter)
+        are_convex = len(parts) > 1 and all(map(is_convex, parts))
+        mesh = join(parts) if are_convex else read_mesh(path, Reporter())
         with self.session.writing("mesh", inputs={}, parameters={"source": str(path.resolve())}) as stage:
-            write_mesh(stage / "mesh.ply", mesh)
-            if len(parts) > 1:
-                CollisionModel.from_parts(parts).save(stage)
+            write_ply(stage / "mesh.ply", mesh)
+            if are_convex:
+                from_parts(parts).save(stage)
+            self._keep_warnings(stage)
         return mesh
 
     def reconstruction(self) -> Reconstruction:
@@ -83,14 +127,15 @@ class Pipeline:
         job = Task(reconstruction_job, (self.session.path / "scan", settings))
 
         def run() -> Reconstruction:
-            return self._in_worker(job, "reconstruction", "reconstruction")
+            result: Reconstruction = self._in_worker(job, "reconstruction")
+            return result
 
         return self._fresh("reconstruction", ("scan",), settings.model_dump(), Reconstruction.load, run)
 
     def surface(self) -> TriangleMesh:
         """Return the object's mesh, reconstructed or imported."""
         if self.session.record("mesh") is not None:
-            return read_mesh(self.session.folder("mesh") / "mesh.ply", Reporter())
+            return read_ply(self.session.folder("mesh") / "mesh.ply")
         return self.reconstruction().mesh
 
     def collision(self) -> CollisionModel:
@@ -102,7 +147,8 @@ class Pipeline:
             given = self._given_parts()
             if given is not None and settings.method != "exact":
                 return given
-            return self._in_worker(Task(collision_job, (surface, settings)), "collision", "collision")
+            model: CollisionModel = self._in_worker(Task(collision_job, (surface, settings)), "collision")
+            return model
 
         return self._fresh("collision", (self._source(),), settings.model_dump(), CollisionModel.load, run)
 
@@ -113,7 +159,7 @@ class Pipeline:
         inputs = self._digests(("collision",))
         if all(self.session.is_fresh(stage, inputs, settings) for stage in ("containability", "pouring")):
             return self._load_imagination()
-        result = imagine(model, self.parameters, self._pool, self._reporter)
+        result = imagine(model, self.parameters, self._pool, self.reporter)
         with self.session.writing(
             "containability", inputs=inputs, parameters=settings, seconds=result.containability_s
         ) as stage:
@@ -141,12 +187,30 @@ class Pipeline:
                 imagination.grid,
                 imagination.choice,
                 self._pool,
-                self._reporter,
+                self.reporter,
             )
 
         return self._fresh(
             "evidence", (self._source(), "containability", "pouring"), settings, Evidence.load, run
         )
+
+    def report(self) -> Path:
+        """Write the session's report and return its path."""
+        evidence = self.evidence()
+        is_scan = self._source() == "reconstruction"
+        content = gather(
+            self.session,
+            (self._preset, load_preset(self._preset)),
+            self.parameters,
+            self.surface(),
+            self.reconstruction() if is_scan else None,
+            self.imagination(),
+            evidence,
+            self.warnings(),
+        )
+        path = self.session.path / "report.html"
+        write_report(content, path)
+        return path
 
     def warnings(self) -> list[str]:
         """Return what the stages wanted the user to know."""
@@ -170,20 +234,23 @@ class Pipeline:
         if self.session.is_fresh(stage, digests, parameters):
             return load(self.session.folder(stage))
         started = perf_counter()
-        self._stage_warnings: list[str] = []
         result = run()
         seconds = perf_counter() - started
         with self.session.writing(stage, inputs=digests, parameters=parameters, seconds=seconds) as folder:
             result.save(folder)
-            if self._stage_warnings:
-                write_json(folder / WARNINGS_FILE, {"warnings": self._stage_warnings})
+            self._keep_warnings(folder)
         return result
 
-    def _in_worker(self, task: Task, stage: str, label: str) -> Any:
-        result, self._stage_warnings = self._pool.run([task], label, self._reporter)[0]
-        for sentence in self._stage_warnings:
-            self._reporter.warn(sentence)
+    def _in_worker(self, task: Task, label: str) -> Any:
+        result, warnings = self._pool.run([task], label, self.reporter)[0]
+        for sentence in warnings:
+            self.reporter.warn(sentence)
         return result
+
+    def _keep_warnings(self, folder: Path) -> None:
+        warnings = self.reporter.take_warnings()
+        if warnings:
+            write_json(folder / WARNINGS_FILE, {"warnings": warnings})
 
     def _digests(self, stages: tuple[str, ...]) -> dict[str, str]:
         digests = {}

@@ -75,7 +75,7 @@ def test_an_unknown_name_is_refused_with_the_nearest(wrong, offered):
     ],
 )
 def test_a_value_out_of_range_is_refused_with_the_range(name, value, said):
-    with pytest.raises(InputError, match="(?s).*") as caught:
+    with pytest.raises(InputError) as caught:
         apply_settings(Parameters(), {name: value})
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)

@@ -1,0 +1,76 @@
+"""Gathering what a report tells from the session's files."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from core.imagination.imagine import Imagination
+from core.imagination.rendering.evidence import Evidence
+from core.mesh import TriangleMesh
+from core.parameters import Parameters
+from core.reconstruction import Reconstruction
+from core.report import Media, ReportContent
+from core.session import Session
+
+_THUMBNAIL_PX = (240, 180)
+_CAPTIONS = {
+    "drop_1_start.png": "Start",
+    "drop_2_falling.png": "Falling",
+    "drop_3_settled.png": "Settled",
+    "drop_4_rotated.png": "Rotated",
+    "drop_5_pushed.png": "Pushed",
+    "drop_6_end.png": "End",
+    "pours.png": "The pours at their end",
+    "drop.mp4": "The drop and the perturbations",
+    "pour.mp4": "The chosen pour",
+}
+_STAGES = ("scan", "mesh", "reconstruction", "collision", "containability", "pouring", "evidence")
+
+
+def gather(
+    session: Session,
+    preset: tuple[str, Parameters],
+    parameters: Parameters,
+    surface: TriangleMesh,
+    reconstruction: Reconstruction | None,
+    imagination: Imagination,
+    evidence: Evidence,
+    warnings: list[str],
+) -> ReportContent:
+    """Put together everything the report shows."""
+    named = {_CAPTIONS.get(name, name): content for name, content in evidence.files.items()}
+    films = {_CAPTIONS[name] for name in evidence.files if name.endswith(".mp4")}
+    records = {stage: session.record(stage) for stage in _STAGES}
+    made = {stage: record for stage, record in records.items() if record is not None}
+    return ReportContent(
+        name=session.name,
+        created=session.created,
+        preset_name=preset[0],
+        preset=preset[1],
+        parameters=parameters,
+        containability=imagination.containability,
+        surface=surface,
+        reconstruction=reconstruction,
+        pours=imagination.grid,
+        choice=imagination.choice,
+        scan_pictures=_thumbnails(session.path / "scan" / "rgbd"),
+        pictures={caption: content for caption, content in named.items() if caption not in films},
+        films={caption: content for caption, content in named.items() if caption in films},
+        seconds={stage: record.seconds for stage, record in made.items()},
+        versions=made["containability"].versions,
+        warnings=tuple(warnings),
+    )
+
+
+def _thumbnails(folder: Path) -> dict[str, Media]:
+    from PIL import Image
+
+    pictures: dict[str, Media] = {}
+    for path in sorted(folder.glob("frame-*.color.png")):
+        buffer = io.BytesIO()
+        with Image.open(path) as image:
+            image.thumbnail(_THUMBNAIL_PX)
+            image.convert("RGB").save(buffer, "JPEG", quality=80)
+        pictures[path.name.split(".")[0]] = buffer.getvalue()
+    return pictures

@@ -1,0 +1,135 @@
+"""Which collision model and how many substeps: retained candies against a fine reference, walls, time.
+
+Prints a Markdown table over the objects in ../shared/data/objects (make collision-table); about 25 minutes on
+two cores. The reference is the exact surface at 960 Hz. A candy went through a wall if its centre crossed the
+true surface between two recorded moments, seen from the object. CPU seconds are of the drop alone.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from core.collision import CollisionModel, build_collision_model
+from core.geometry import transform_points
+from core.imagination.body import body_files
+from core.imagination.containability import drop_task
+from core.imagination.imagine import WORKER_MODULE, object_at_rest
+from core.imagination.results import Containability
+from core.mesh import TriangleMesh
+from core.mesh_file import read_mesh
+from core.parameters import Parameters, apply_settings
+from core.progress import Reporter
+from core.workers import Task, WorkerPool
+
+OBJECTS = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "objects"
+REFERENCE = "exact 960 Hz"
+VARIANTS: dict[str, dict[str, object]] = {
+    REFERENCE: {"collision.method": "exact", "solver.rate_hz": 960},
+    "exact": {"collision.method": "exact", "solver.substeps": 1},
+    "exact, 2 substeps": {"collision.method": "exact", "solver.substeps": 2},
+    "exact, 4 substeps": {"collision.method": "exact", "solver.substeps": 4},
+    "vhacd": {"collision.method": "vhacd"},
+    "coacd": {"collision.method": "coacd"},
+}
+
+
+@dataclass(frozen=True)
+class Row:
+    """One object with one variant; `model_s` is the time to make the collision model."""
+
+    n_drop: int
+    n_in: int
+    n_through: int
+    model_s: float
+    drop_cpu_s: float
+
+
+def measure(mesh: TriangleMesh, settings: dict[str, object]) -> Row:
+    """Build the model, drop, and count; runs in a worker."""
+    parameters = apply_settings(Parameters(), {"evidence.record_interval_s": 1 / 60, **settings})
+    started = time.perf_counter()
+    model: CollisionModel = build_collision_model(mesh, parameters.collision, Reporter())
+    model_s = time.perf_counter() - started
+    with body_files(object=(model.parts, not model.is_convex)) as files:
+        task = drop_task(object_at_rest(model, files["object"], parameters), parameters)
+        started = time.process_time()
+        found: Containability = task.function(*task.arguments)
+        drop_cpu_s = time.process_time() - started
+    return Row(found.n_drop, found.n_in, count_through_walls(mesh, found), model_s, drop_cpu_s)
+
+
+def count_through_walls(mesh: TriangleMesh, found: Containability) -> int:
+    """Count the candies whose centre crossed the surface."""
+    import open3d
+
+    scene = open3d.t.geometry.RaycastingScene(nthreads=1)
+    scene.add_triangles(mesh.vertices_m.astype(np.float32), mesh.faces.astype(np.uint32))
+    recording = found.recording
+    inverse = np.linalg.inv(recording.T_world_body)
+    positions = np.stack(
+        [transform_points(T, moment) for T, moment in zip(inverse, recording.positions_m, strict=True)]
+    )
+    starts, ends = positions[:-1].reshape(-1, 3), positions[1:].reshape(-1, 3)
+    moves = ends - starts
+    length = np.linalg.norm(moves, axis=1)
+    real = np.isfinite(length) & (length > 1e-6)
+    rays = np.hstack([starts[real], moves[real] / length[real, None]]).astype(np.float32)
+    hit = scene.cast_rays(open3d.core.Tensor(rays), nthreads=1)["t_hit"].numpy()
+    candies = np.tile(np.arange(positions.shape[1]), len(positions) - 1)[real]
+    return len(np.unique(candies[hit < length[real]]))
+
+
+def main(names: Sequence[str]) -> None:
+    """Measure all objects, or those named, and print the table."""
+    with (OBJECTS / "manifest.csv").open(encoding="utf-8") as file:
+        labels = {row["id"]: row["label"] for row in csv.DictReader(file)}
+    chosen = [name for name in labels if not names or name in names]
+    meshes = {name: read_mesh(OBJECTS / "meshes" / f"{name}.obj", Reporter()) for name in chosen}
+    keys = [(name, variant) for name in chosen for variant in VARIANTS]
+    with WorkerPool() as pool:
+        pool.start(WORKER_MODULE)
+        tasks = [Task(measure, (meshes[name], VARIANTS[variant])) for name, variant in keys]
+        rows: dict[tuple[str, str], Row] = dict(zip(keys, pool.run(tasks, "table", Reporter()), strict=True))
+    print_table(rows, labels, chosen)
+
+
+def print_table(rows: dict[tuple[str, str], Row], labels: dict[str, str], chosen: list[str]) -> None:
+    """Print one line a variant, then one line an object."""
+    print(
+        "| variant | |difference| of Omega, mean / worst | through a wall | accuracy at 0 | model s | drop CPU s |"
+    )
+    print("|---|---|---|---|---|---|")
+    for variant in VARIANTS:
+        mine = [rows[name, variant] for name in chosen]
+        omegas = np.array([row.n_in / row.n_drop for row in mine])
+        truth = np.array([rows[name, REFERENCE].n_in / rows[name, REFERENCE].n_drop for name in chosen])
+        judged = [
+            (omega > 0) == (labels[name] == "container")
+            for name, omega in zip(chosen, omegas, strict=True)
+            if labels[name] != "ambiguous"
+        ]
+        off = np.abs(omegas - truth)
+        through, dropped = sum(row.n_through for row in mine), sum(row.n_drop for row in mine)
+        print(
+            f"| {variant} | {off.mean():.3f} / {off.max():.3f} ({chosen[int(off.argmax())]}) "
+            f"| {through} of {dropped} | {100 * np.mean(judged):.1f} % "
+            f"| {np.mean([row.model_s for row in mine]):.2f} | {np.mean([row.drop_cpu_s for row in mine]):.2f} |"
+        )
+    print("\n| object | label | " + " | ".join(VARIANTS) + " |")
+    print("|---|---" + "|---" * len(VARIANTS) + "|")
+    for name in chosen:
+        cells = [
+            f"{rows[name, v].n_in / rows[name, v].n_drop:.3f} ({rows[name, v].n_through})" for v in VARIANTS
+        ]
+        print(f"| {name} | {labels[name]} | " + " | ".join(cells) + " |")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
