@@ -181,7 +181,7 @@ def report_fraction(fraction: float) -> None:
 
 
 class WorkerReporter(Reporter):
-    """The reporter a stage gets inside a worker: its progress goes to the parent, its warnings into a list."""
+    """What a stage gets inside a worker: progress goes to the parent, warnings into a list."""
 
     def __init__(self) -> None:
         super().__init__()

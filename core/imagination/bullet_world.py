@@ -53,7 +53,7 @@ class BulletWorld:
         self._solver = solver
         self._particle = particle
         self._contact = contact
-        self._region_m = (region_m + [[-_REGION_MARGIN_M], [_REGION_MARGIN_M]]).tolist()
+        self._region_m = (region_m + np.array([[-_REGION_MARGIN_M], [_REGION_MARGIN_M]])).tolist()
         self._fast_m_s = min(particle.height_m, particle.diameter_m) / 2 * solver.rate_hz
         self._client = _server()
         self._substeps = 0

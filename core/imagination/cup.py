@@ -1,8 +1,8 @@
 """The cup and how it turns about its rim (Sec. III-B, Fig. 4a, Eq. 6).
 
 Cup frame: origin at the outer centre of the base, z along the axis to the mouth. The pivot is the point of
-the inner rim in the cup's x-z plane. E-local frame: origin at the pivot, x along the ray from p_E to the pivot
-(theta_pour = 0), z up; there every pour is the same motion.
+the inner rim in the cup's x-z plane. E-local frame: origin at the pivot, x along the ray from p_E to the
+pivot (theta_pour = 0), z up; there every pour is the same motion.
 """
 
 from __future__ import annotations

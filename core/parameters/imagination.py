@@ -58,7 +58,15 @@ class SolverParameters(Group):
     rate_hz: int = quantity(
         240, "Steps per second.", unit="Hz", source=f"{PAPER}, Sec. III-A", low=60, high=4000
     )
-    substeps: int = quantity(1, "Parts each step is computed in.", unit="", source=OURS, low=1, high=32)
+    substeps: int = quantity(
+        4,
+        "Most parts a step is computed in, so that no candy near the object moves on by more than half its "
+        "thickness.",
+        unit="",
+        source=OURS,
+        low=1,
+        high=32,
+    )
     iterations: int = quantity(
         10, "Iterations of the contact solver.", unit="", source=f"{OURS}; Bullet: 50", low=1, high=500
     )

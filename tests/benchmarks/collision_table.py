@@ -103,7 +103,7 @@ def main(names: Sequence[str]) -> None:
 def print_table(rows: dict[tuple[str, str], Row], labels: dict[str, str], chosen: list[str]) -> None:
     """Print one line a variant, then one line an object."""
     print(
-        "| variant | |difference| of Omega, mean / worst | through a wall | accuracy at 0 | model s | drop CPU s |"
+        "| variant | Omega off by, mean / worst | through a wall | accuracy at 0 | model s | drop CPU s |"
     )
     print("|---|---|---|---|---|---|")
     for variant in VARIANTS:
@@ -120,7 +120,8 @@ def print_table(rows: dict[tuple[str, str], Row], labels: dict[str, str], chosen
         print(
             f"| {variant} | {off.mean():.3f} / {off.max():.3f} ({chosen[int(off.argmax())]}) "
             f"| {through} of {dropped} | {100 * np.mean(judged):.1f} % "
-            f"| {np.mean([row.model_s for row in mine]):.2f} | {np.mean([row.drop_cpu_s for row in mine]):.2f} |"
+            f"| {np.mean([row.model_s for row in mine]):.2f} "
+            f"| {np.mean([row.drop_cpu_s for row in mine]):.2f} |"
         )
     print("\n| object | label | " + " | ".join(VARIANTS) + " |")
     print("|---|---" + "|---" * len(VARIANTS) + "|")
