@@ -102,9 +102,7 @@ def main(names: Sequence[str]) -> None:
 
 def print_table(rows: dict[tuple[str, str], Row], labels: dict[str, str], chosen: list[str]) -> None:
     """Print one line a variant, then one line an object."""
-    print(
-        "| variant | Omega off by, mean / worst | through a wall | accuracy at 0 | model s | drop CPU s |"
-    )
+    print("| variant | Omega off by, mean / worst | through a wall | accuracy at 0 | model s | drop CPU s |")
     print("|---|---|---|---|---|---|")
     for variant in VARIANTS:
         mine = [rows[name, variant] for name in chosen]

@@ -1,0 +1,120 @@
+"""Stale and fresh: a changed parameter makes the stages after it stale, and nothing else."""
+
+import json
+
+import pytest
+
+from core.errors import Cancelled
+from core.parameters import Parameters, apply_settings
+from core.pipeline import Pipeline
+from core.progress import Reporter
+from core.session import Session
+from core.workers import WorkerPool
+from hardware.simulation.objects import builtin_object
+from hardware.simulation.scan import simulate_scan
+
+QUICK = {
+    "reconstruction.voxel_m": 0.005,
+    "containability.n_max": 64,
+    "containability.n_min": 40,
+    "containability.rotation_s": 0.3,
+    "pouring.n_pour": 10,
+    "pouring.n_packings": 1,
+    "evidence.films": False,
+}
+STAGES = ("scan", "reconstruction", "collision", "containability", "pouring", "evidence")
+
+
+class Recorder(Reporter):
+    """Remembers which stages ran; optionally stops at one."""
+
+    def __init__(self, stop_at=None):
+        super().__init__()
+        self.stages = []
+        self._stop_at = stop_at
+
+    def progress(self, stage, done, total):
+        if stage not in self.stages:
+            self.stages.append(stage)
+        if stage == self._stop_at:
+            self.cancel()
+
+
+@pytest.fixture(scope="module")
+def pool():
+    with WorkerPool(2) as workers:
+        yield workers
+
+
+@pytest.fixture(scope="module")
+def scan():
+    return simulate_scan(builtin_object("bowl"), 0, Reporter())
+
+
+@pytest.fixture
+def session(tmp_path, scan, pool):
+    with Session.create_or_open(tmp_path / "session") as held:
+        pipeline_of(held, pool).keep_scan(scan, {"object": "bowl"})
+        yield held
+
+
+def pipeline_of(session, pool, settings=None, reporter=None):
+    parameters = apply_settings(Parameters(), QUICK | (settings or {}))
+    return Pipeline(session, parameters, pool, reporter or Recorder())
+
+
+def created(session):
+    return {
+        stage: (session.path / stage / "record.json").stat().st_mtime_ns
+        for stage in STAGES
+        if (session.path / stage).exists()
+    }
+
+
+def renewed(before, after):
+    return [stage for stage in STAGES if before.get(stage) != after.get(stage)]
+
+
+def test_only_what_a_parameter_touches_runs_again(session, pool):
+    path = pipeline_of(session, pool).report()
+    assert "Open container" in path.read_text(encoding="utf-8")
+    first = created(session)
+    assert list(first) == list(STAGES)
+
+    pipeline_of(session, pool).report()
+    assert renewed(first, created(session)) == []
+
+    pipeline_of(session, pool, {"containability.omega_threshold": 0.01}).imagination()
+    second = created(session)
+    assert renewed(first, second) == ["containability", "pouring"]
+
+    pipeline_of(session, pool, {"reconstruction.voxel_m": 0.006}).imagination()
+    assert renewed(second, created(session)) == ["reconstruction", "collision", "containability", "pouring"]
+
+
+def test_an_interrupted_run_continues_where_it_stopped(session, pool):
+    with pytest.raises(Cancelled):
+        pipeline_of(session, pool, reporter=Recorder(stop_at="pouring")).imagination()
+    kept = created(session)
+    assert list(kept) == ["scan", "reconstruction", "collision"]
+    again = Recorder()
+    pipeline_of(session, pool, reporter=again).imagination()
+    assert "reconstruction" not in again.stages
+    assert renewed(kept, created(session)) == ["containability", "pouring"]
+
+
+def test_a_loaded_imagination_is_the_one_that_was_run(session, pool):
+    run = pipeline_of(session, pool).imagination()
+    loaded = pipeline_of(session, pool).imagination()
+    assert loaded.containability.omega == run.containability.omega
+    assert (loaded.grid.n_in == run.grid.n_in).all()
+    assert (loaded.choice.i, loaded.choice.j) == (run.choice.i, run.choice.j)
+    assert loaded.choice.T_world_cup == pytest.approx(run.choice.T_world_cup)
+
+
+def test_a_record_tells_what_a_stage_was_made_from(session, pool):
+    pipeline_of(session, pool).imagination()
+    record = json.loads((session.path / "containability" / "record.json").read_text())
+    assert record["inputs"] == {"collision": session.record("collision").digest}
+    assert record["parameters"]["seed"] == 0
+    assert {"python", "numpy", "pybullet", "poursight"} <= set(record["versions"])

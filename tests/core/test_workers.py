@@ -1,0 +1,140 @@
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import psutil
+import pytest
+
+from core.errors import Cancelled, InputError, WorkerError
+from core.progress import Reporter
+from core.workers import Task, WorkerPool, report_fraction
+
+
+def square(x):
+    time.sleep(0.02 * (3 - x % 3))  # so that results come in another order than they were asked for
+    return x * x
+
+
+def process_number():
+    time.sleep(0.05)
+    return os.getpid()
+
+
+def sleep_reporting(seconds):
+    for k in range(int(seconds * 50)):
+        report_fraction(k / (seconds * 50))
+        time.sleep(0.02)
+
+
+def sleep_deaf(seconds):
+    time.sleep(seconds)
+
+
+def kill_myself():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def refuse():
+    raise InputError("No.")
+
+
+class Watching(Reporter):
+    def __init__(self):
+        super().__init__()
+        self.fractions = []
+
+    def progress(self, stage, done, total):
+        self.fractions.append(done / total)
+
+
+@pytest.fixture
+def pool():
+    with WorkerPool(2) as workers:
+        yield workers
+
+
+def test_results_come_in_the_order_of_the_tasks(pool):
+    assert pool.run([Task(square, (x,)) for x in range(12)], "squares", Reporter()) == [
+        x * x for x in range(12)
+    ]
+
+
+def test_progress_grows_to_one_and_moves_within_a_task(pool):
+    watching = Watching()
+    pool.run([Task(sleep_reporting, (1.0,))], "sleep", watching)
+    assert watching.fractions == sorted(watching.fractions)
+    assert watching.fractions[-1] == 1
+    assert sum(0.2 < fraction < 0.8 for fraction in watching.fractions) > 3
+
+
+def test_a_tasks_own_error_reaches_the_caller_and_the_pool_goes_on(pool):
+    with pytest.raises(InputError, match="No"):
+        pool.run([Task(refuse, ())], "refuse", Reporter())
+    assert pool.run([Task(square, (3,))], "squares", Reporter()) == [9]
+
+
+def test_a_killed_worker_is_a_sentence_and_the_pool_goes_on(pool):
+    with pytest.raises(WorkerError, match="worker process died during 'kill'"):
+        pool.run([Task(square, (1,)), Task(kill_myself, ())], "kill", Reporter())
+    assert pool.run([Task(square, (3,))], "squares", Reporter()) == [9]
+
+
+@pytest.mark.parametrize("task", [Task(sleep_reporting, (30.0,)), Task(sleep_deaf, (30.0,))])
+def test_cancelling_takes_less_than_two_seconds_even_when_a_task_does_not_listen(pool, task):
+    pool.run([Task(square, (1,))], "start", Reporter())
+    reporter = Reporter()
+    threading.Timer(0.3, reporter.cancel).start()
+    started = time.perf_counter()
+    with pytest.raises(Cancelled):
+        pool.run([task] * 3, "sleep", reporter)
+    assert time.perf_counter() - started < 2
+    assert pool.run([Task(square, (3,))], "squares", Reporter()) == [9]
+
+
+def test_closing_ends_the_processes():
+    with WorkerPool(2) as workers:
+        numbers = set(workers.run([Task(process_number, ()) for _ in range(6)], "numbers", Reporter()))
+    deadline = time.perf_counter() + 5
+    while any(psutil.pid_exists(number) for number in numbers) and time.perf_counter() < deadline:
+        time.sleep(0.05)
+    assert not [number for number in numbers if psutil.pid_exists(number)]
+
+
+def test_workers_die_with_a_parent_that_is_killed(tmp_path):
+    script = (
+        "import sys, time\n"
+        "from core.progress import Reporter\n"
+        "from core.workers import Task, WorkerPool\n"
+        "import os\n"
+        "if __name__ == '__main__':\n"
+        "    pool = WorkerPool(1)\n"
+        "    print(*pool.run([Task(os.getpid, ())], 'x', Reporter()), flush=True)\n"
+        "    time.sleep(60)\n"
+    )
+    (tmp_path / "parent.py").write_text(script)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen(
+        [sys.executable, str(tmp_path / "parent.py")], stdout=subprocess.PIPE, env=environment
+    ) as parent:
+        worker = int(parent.stdout.readline())
+        parent.kill()
+    deadline = time.perf_counter() + 5
+    while psutil.pid_exists(worker) and time.perf_counter() < deadline:
+        time.sleep(0.05)
+    assert not psutil.pid_exists(worker)
+
+
+def print_from_c():
+    import ctypes
+
+    ctypes.CDLL(None).puts(b"noise")
+    ctypes.CDLL(None).fflush(None)
+
+
+def test_what_workers_print_does_not_reach_stdout(capfd):
+    with WorkerPool(1) as workers:
+        workers.run([Task(print_from_c, ())], "print", Reporter())
+    assert capfd.readouterr().out == ""
