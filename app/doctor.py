@@ -10,10 +10,7 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from core.errors import PoursightError
 from core.imagination.rendering.doctor import renderer_name
-from core.progress import Reporter
-from core.workers import Task, WorkerPool
 
 _FREE_DISK_BYTES = 2 * 10**9
 _SHOWN = ("numpy", "numba", "scipy", "pybullet", "open3d-cpu", "trimesh", "vhacdx", "coacd", "pydantic")
@@ -74,12 +71,7 @@ def _known_bad() -> list[Finding]:
 
 
 def _renderer() -> list[Finding]:
-    try:
-        with WorkerPool(1) as pool:
-            name = pool.run([Task(renderer_name, ())], "renderer", Reporter())[0]
-    except PoursightError as error:
-        return [Finding("renderer", "none", f"{error} Pictures of the imagination cannot be made.")]
-    return [Finding("renderer", name)]
+    return [Finding("renderer", renderer_name())]
 
 
 def _disk() -> list[Finding]:

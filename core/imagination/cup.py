@@ -75,16 +75,6 @@ def cup_parts(cup: CupParameters) -> tuple[TriangleMesh, ...]:
     return (*staves, base)
 
 
-def cup_mesh(cup: CupParameters) -> TriangleMesh:
-    """All parts of the cup in one mesh, to look at."""
-    parts = cup_parts(cup)
-    firsts = np.cumsum([0, *(len(part.vertices_m) for part in parts[:-1])])
-    return TriangleMesh(
-        np.vstack([part.vertices_m for part in parts]),
-        np.vstack([part.faces + first for part, first in zip(parts, firsts, strict=True)]),
-    )
-
-
 def _hull(vertices_m: FloatArray) -> TriangleMesh:
     from scipy.spatial import ConvexHull
 

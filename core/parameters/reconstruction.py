@@ -92,5 +92,10 @@ class CollisionParameters(Group):
     vhacd_voxels: int = quantity(50_000, "Voxels of V-HACD.", unit="", source=OURS, low=1_000, high=2_000_000)
     vhacd_hulls: int = quantity(32, "Most convex parts of V-HACD.", unit="", source=OURS, low=1, high=512)
     coacd_threshold: float = quantity(
-        0.05, "Concavity that CoACD leaves.", unit="", source=OURS, low=0.01, high=1
+        0.05,
+        "Concavity that CoACD leaves, relative to the size of the object.",
+        unit="",
+        source=OURS,
+        low=0.01,
+        high=1,
     )

@@ -11,10 +11,10 @@ from typing import Any, Protocol, TypeVar
 from core.collision import CollisionModel, from_parts
 from core.errors import SessionError
 from core.files import read_json, write_json
-from core.imagination.cup import cup_mesh
 from core.imagination.imagine import Imagination, imagine
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
+from core.imagination.rendering.shapes import cup_surface
 from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh, read_mesh_parts
@@ -113,7 +113,7 @@ class Pipeline:
             )
         parts = read_mesh_parts(path, self.reporter)
         are_convex = len(parts) > 1 and all(map(is_convex, parts))
-        mesh = join(parts) if are_convex else read_mesh(path, Reporter())
+        mesh = join(parts) if are_convex else read_mesh(path, self.reporter)
         with self.session.writing("mesh", inputs={}, parameters={"source": str(path.resolve())}) as stage:
             write_ply(stage / "mesh.ply", mesh)
             if are_convex:
@@ -181,7 +181,7 @@ class Pipeline:
         def run() -> Evidence:
             return render_evidence(
                 self.surface(),
-                cup_mesh(self.parameters.pouring.cup),
+                cup_surface(self.parameters.pouring.cup),
                 self.parameters,
                 imagination.containability,
                 imagination.grid,

@@ -39,7 +39,7 @@ def gather(
     warnings: list[str],
 ) -> ReportContent:
     """Put together everything the report shows."""
-    named = {_CAPTIONS.get(name, name): content for name, content in evidence.files.items()}
+    named = {_CAPTIONS[name]: evidence.files[name] for name in _CAPTIONS if name in evidence.files}
     films = {_CAPTIONS[name] for name in evidence.files if name.endswith(".mp4")}
     records = {stage: session.record(stage) for stage in _STAGES}
     made = {stage: record for stage, record in records.items() if record is not None}

@@ -1,0 +1,95 @@
+"""What the physics collides with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import SessionError
+from core.files import read_arrays, read_json, write_arrays, write_json
+from core.geometry import AnyArray, FloatArray
+from core.mesh import TriangleMesh
+from core.mesh_topology import join
+
+GIVEN = "given"
+"""Method of a model whose convex parts were not made here but read."""
+_TABLE = "collision.json"
+_ARRAYS = "collision.npz"
+
+
+@dataclass(frozen=True)
+class CollisionModel:
+    """A body for the physics.
+
+    Attributes:
+        method: `exact`: one part, any shape, to be used as a static triangle mesh. `vhacd`, `coacd` and
+            `given`: convex parts.
+        parts: meshes in metres, in the frame of the surface.
+        surface: the true surface, simplified; its AABB decides which particle is inside (Sec. III-A).
+    """
+
+    method: str
+    parts: tuple[TriangleMesh, ...]
+    surface: TriangleMesh
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether each part is to be used as a convex hull."""
+        return self.method != "exact"
+
+    @property
+    def aabb_min_m(self) -> FloatArray:
+        """Lower corner (3,) of the surface's axis-aligned bounding box."""
+        return self.surface.aabb_min_m
+
+    @property
+    def aabb_max_m(self) -> FloatArray:
+        """Upper corner (3,) of the surface's axis-aligned bounding box."""
+        return self.surface.aabb_max_m
+
+    def save(self, folder: Path) -> None:
+        """Write `collision.npz` (exact coordinates) and `collision.json` into an existing folder."""
+        write_arrays(
+            folder / _ARRAYS,
+            part_n_vertices=np.array([len(part.vertices_m) for part in self.parts]),
+            part_n_faces=np.array([len(part.faces) for part in self.parts]),
+            part_vertices_m=np.concatenate([part.vertices_m for part in self.parts]),
+            part_faces=np.concatenate([part.faces for part in self.parts]),
+            surface_vertices_m=self.surface.vertices_m,
+            surface_faces=self.surface.faces,
+        )
+        write_json(
+            folder / _TABLE,
+            {
+                "method": self.method,
+                "n_parts": len(self.parts),
+                "n_faces": len(join(self.parts).faces),
+                "aabb_min_m": self.aabb_min_m.tolist(),
+                "aabb_max_m": self.aabb_max_m.tolist(),
+            },
+        )
+
+    @classmethod
+    def load(cls, folder: Path) -> CollisionModel:
+        """Read what `save` wrote.
+
+        Raises:
+            SessionError: a file is missing or damaged.
+        """
+        table, arrays = read_json(folder / _TABLE), read_arrays(folder / _ARRAYS)
+        try:
+            vertices = _cut(arrays["part_vertices_m"], arrays["part_n_vertices"])
+            faces = _cut(arrays["part_faces"], arrays["part_n_faces"])
+            parts = tuple(TriangleMesh(v, f) for v, f in zip(vertices, faces, strict=True))
+            surface = TriangleMesh(arrays["surface_vertices_m"], arrays["surface_faces"])
+            return cls(str(table["method"]), parts, surface)
+        except (KeyError, ValueError) as error:
+            raise SessionError(
+                f"The collision model in {folder} is damaged ({error}); build it again."
+            ) from error
+
+
+def _cut(rows: AnyArray, lengths: AnyArray) -> list[AnyArray]:
+    return np.split(rows, np.cumsum(lengths)[:-1])

@@ -1,0 +1,1 @@
+"""Evidence pictures and films, made by replaying recordings; nothing is simulated here."""

@@ -1,0 +1,103 @@
+"""The drop made visible: its scene, its camera over time, its phases in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import degrees
+from pathlib import Path
+
+import numpy as np
+
+from core.geometry import FloatArray
+from core.imagination.particle_shape import particle_extents_m
+from core.imagination.rendering.camera import Camera, aabb_corners, frame
+from core.imagination.rendering.replay import Replay, lowest_point_m, make_replay
+from core.imagination.rendering.scene import OBJECT_COLOR, Picture, Scene
+from core.imagination.results import Containability
+from core.mesh import TriangleMesh
+from core.parameters import Parameters
+from core.parameters.imagination import ContainabilityParameters
+
+_GROUND_GAP_M = 0.0005
+_SURROUNDINGS = 0.25
+
+
+@dataclass(frozen=True)
+class DropView:
+    """An open scene of the drop; `wide` sees the candies in the air, `near` what lies by the object."""
+
+    scene: Scene
+    object_id: int
+    replay: Replay
+    wide: Camera
+    near: Camera
+    near_from_s: float
+
+    def shoot(self, moment: int, width: int, height: int) -> Picture:
+        """Take the picture (height, width, 3) of a recorded moment; the camera comes nearer as they fall."""
+        recording = self.replay.recording
+        self.scene.move_mesh(self.object_id, recording.T_world_body[moment])
+        self.scene.move_candies(
+            recording.positions_m[moment], recording.quaternions[moment], self.replay.retained
+        )
+        share = min(float(recording.time_s[moment]) / max(self.near_from_s, 1e-6), 1.0)
+        eased = share * share * (3 - 2 * share)
+        return self.scene.photograph(self.wide.blended(self.near, eased), width, height)
+
+
+@contextmanager
+def open_drop(
+    folder: Path,
+    surface: TriangleMesh,
+    containability: Containability,
+    parameters: Parameters,
+    aspect: float,
+    with_egl: bool,
+) -> Iterator[DropView]:
+    """Open the scene of a drop; files that Bullet reads go to `folder` as long as it is open."""
+    aabb = np.array([surface.aabb_min_m, surface.aabb_max_m])
+    recording = containability.recording
+    ground_m = lowest_point_m(surface, recording.T_world_body) - _GROUND_GAP_M
+    candy_height_m = float(particle_extents_m(parameters.particle)[2])
+    replay = make_replay(recording, containability.retained, ground_m, candy_height_m)
+    with Scene(folder, aabb, with_egl) as scene:
+        scene.add_ground(ground_m)
+        object_id = scene.add_mesh(surface, OBJECT_COLOR)
+        scene.add_candies(
+            parameters.particle, containability.n_in, containability.n_drop - containability.n_in
+        )
+        near_points = _near_points(aabb, replay)
+        wide_points = np.vstack([near_points, containability.drop_positions_m])
+        yield DropView(
+            scene,
+            object_id,
+            replay,
+            frame(wide_points, scene.forward, aspect),
+            frame(near_points, scene.forward, aspect),
+            parameters.containability.drop_s,
+        )
+
+
+def phase(settings: ContainabilityParameters, time_s: float) -> str:
+    """Say what happens to the object at a time."""
+    amplitude = f"{degrees(settings.rotation_rad):.3g}°"
+    since = time_s - settings.drop_s
+    if since < 0:
+        return "falling"
+    if since < 2 * settings.rotation_s:
+        return f"rotating {amplitude} about {'x' if since < settings.rotation_s else 'y'}"
+    pushes = since - 2 * settings.rotation_s
+    if pushes < 4 * settings.translation_s:
+        return "pushed along " + ("+x", "-x", "+y", "-y")[int(pushes / settings.translation_s)]
+    return "end"
+
+
+def _near_points(aabb_m: FloatArray, replay: Replay) -> FloatArray:
+    """The object and the lost candies that lie close by."""
+    final = replay.recording.positions_m[-1]
+    room = _SURROUNDINGS * np.linalg.norm(aabb_m[1] - aabb_m[0])
+    with np.errstate(invalid="ignore"):
+        is_close = ((final > aabb_m[0] - room) & (final < aabb_m[1] + room)).all(axis=1)
+    return np.vstack([aabb_corners(*aabb_m), final[is_close].astype(float)])

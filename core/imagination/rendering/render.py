@@ -1,0 +1,85 @@
+"""All evidence of one imagination, its tasks shared among the workers."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from core.errors import WorkerError
+from core.imagination.rendering.evidence import Evidence
+from core.imagination.rendering.films import render_drop_film, render_pour_film
+from core.imagination.rendering.sheet import render_pour_sheet
+from core.imagination.rendering.stills import render_drop_stills
+from core.imagination.results import Containability, PourChoice, PourGrid
+from core.mesh import TriangleMesh
+from core.parameters import Parameters
+from core.progress import Reporter
+from core.workers import Task, WorkerPool
+
+STAGE = "evidence"
+PICTURE_PX = (640, 480)
+WORKER_MODULE = "core.imagination.rendering.render"
+"""What workers import before their first task."""
+
+
+def render_evidence(
+    surface: TriangleMesh,
+    cup: TriangleMesh | None,
+    parameters: Parameters,
+    containability: Containability,
+    grid: PourGrid | None,
+    choice: PourChoice | None,
+    pool: WorkerPool,
+    reporter: Reporter,
+) -> Evidence:
+    """Render what `parameters.evidence` asks for, with EGL or, where that fails, with TinyRenderer.
+
+    `surface` is the object at rest in the frame of the recordings, `cup` the cup in its own frame.
+
+    Raises:
+        Cancelled: the reporter was asked to stop.
+        StageError: ffmpeg is missing or made no film.
+        WorkerError: the workers die whichever renderer they use.
+    """
+
+    def render(folder: Path, with_egl: bool) -> Evidence:
+        tasks = _tasks(folder, surface, cup, parameters, containability, grid, choice, with_egl)
+        parts: list[Evidence] = pool.run(tasks, STAGE, reporter)
+        files = {name: content for part in parts for name, content in part.files.items()}
+        return Evidence(files, parts[0].renderer if parts else "")
+
+    # The folder is the parent's, so that it goes even when a worker is killed.
+    with tempfile.TemporaryDirectory(prefix="poursight-", ignore_cleanup_errors=True) as folder:
+        try:
+            return render(Path(folder), with_egl=True)
+        except WorkerError:
+            # Bullet's EGL plugin ends the process when the graphics driver is broken.
+            reporter.warn("Drawing with the graphics driver (EGL) failed; it is done without, more slowly.")
+            return render(Path(folder), with_egl=False)
+
+
+def _tasks(
+    folder: Path,
+    surface: TriangleMesh,
+    cup: TriangleMesh | None,
+    parameters: Parameters,
+    containability: Containability,
+    grid: PourGrid | None,
+    choice: PourChoice | None,
+    with_egl: bool,
+) -> list[Task]:
+    """Longest first, so that two workers end at about the same time; weights are seconds, roughly."""
+    aabb_m, wanted = containability.aabb_m, parameters.evidence
+    drop = (folder, surface, containability, parameters, PICTURE_PX, with_egl)
+    tasks = []
+    if wanted.films:
+        tasks.append(Task(render_drop_film, drop, 8.0))
+    if wanted.films and grid is not None and choice is not None:
+        pour = (folder, surface, aabb_m, cup, grid, choice, parameters, PICTURE_PX, with_egl)
+        tasks.append(Task(render_pour_film, pour, 4.0))
+    if wanted.renders and grid is not None:
+        sheet = (folder, surface, aabb_m, cup, grid, choice, parameters, with_egl)
+        tasks.append(Task(render_pour_sheet, sheet, 2.0))
+    if wanted.renders:
+        tasks.append(Task(render_drop_stills, drop, 1.0))
+    return tasks

@@ -1,0 +1,87 @@
+"""From a recording to what is drawn: each candy's fate, and where the lost ones lie."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.geometry import BoolArray, FloatArray
+from core.imagination.recording import Float32Array, Recording
+from core.mesh import TriangleMesh
+
+_LONGEST_FALL_S = 0.3
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A recording made ready to be looked at.
+
+    Attributes:
+        recording: its lost candies lie where they passed the ground.
+        retained: (N,) whether the candy counts as kept, or poured in, at the end.
+        ground_m: height of the ground, just below everything the object reaches.
+    """
+
+    recording: Recording
+    retained: BoolArray
+    ground_m: float
+
+    def moment_at(self, time_s: float) -> int:
+        """Index of the recorded moment nearest to `time_s`."""
+        return int(np.abs(self.recording.time_s - time_s).argmin())
+
+
+def make_replay(recording: Recording, retained: BoolArray, ground_m: float, candy_height_m: float) -> Replay:
+    """Prepare a recording; the imagination has no ground, so a lost candy is laid where it passes ours."""
+    positions, quaternions = recording.positions_m.copy(), recording.quaternions.copy()
+    resting_m = ground_m + candy_height_m / 2
+    for candy in np.flatnonzero(~retained):
+        moment = _first_gone(positions[:, candy], resting_m)
+        if moment is not None:
+            landed = _landing(positions[:, candy], recording.time_s, moment, resting_m)
+            positions[moment:, candy] = landed
+            quaternions[moment:, candy] = (0, 0, 0, 1)
+    return Replay(replace(recording, positions_m=positions, quaternions=quaternions), retained, ground_m)
+
+
+def poured_in(recording: Recording, aabb_m: FloatArray, counted: str) -> BoolArray:
+    """Return (N,) which candies count at the end, by the rule `counted` of the pouring parameters."""
+    final = recording.positions_m[-1]
+    with np.errstate(invalid="ignore"):
+        if counted == "inside":
+            inside: BoolArray = ((final > aabb_m[0]) & (final < aabb_m[1])).all(axis=1)
+            return inside
+        above: BoolArray = final[:, 2] >= aabb_m[0, 2]
+        return above
+
+
+def lowest_point_m(surface: TriangleMesh, T_world_body: Float32Array) -> float:
+    """Lowest height the surface reaches while it moves through the poses (K, 4, 4)."""
+    heights = T_world_body[:, 2, :3] @ surface.vertices_m.T + T_world_body[:, 2, 3:]
+    return float(heights.min())
+
+
+def _first_gone(path_m: Float32Array, resting_m: float) -> int | None:
+    """First moment at which a candy that was there is below `resting_m` or no longer recorded."""
+    is_there = np.isfinite(path_m[:, 2])
+    with np.errstate(invalid="ignore"):
+        is_gone = ~is_there | (path_m[:, 2] < resting_m)
+    was_there = np.concatenate([[False], np.logical_or.accumulate(is_there)[:-1]])
+    moments = np.flatnonzero(is_gone & was_there)
+    return int(moments[0]) if len(moments) else None
+
+
+def _landing(path_m: Float32Array, time_s: Float32Array, moment: int, resting_m: float) -> FloatArray:
+    """Where a candy passes the ground, going on as it moved at the last moment above it."""
+    last = path_m[moment - 1].astype(float)
+    step_s = float(time_s[moment] - time_s[moment - 1])
+    if np.isfinite(path_m[moment, 2]):
+        velocity = (path_m[moment] - last) / step_s
+    elif moment >= 2 and np.isfinite(path_m[moment - 2, 2]):
+        velocity = (last - path_m[moment - 2]) / float(time_s[moment - 1] - time_s[moment - 2])
+    else:
+        velocity = np.zeros(3)
+    falling_m_s = max(-float(velocity[2]), 0.1)
+    fall_s = np.clip((last[2] - resting_m) / falling_m_s, 0, _LONGEST_FALL_S)
+    return np.array([last[0] + velocity[0] * fall_s, last[1] + velocity[1] * fall_s, resting_m])

@@ -1,0 +1,237 @@
+"""Reading meshes that people bring along and writing our own.
+
+Whatever is wrong with a file is said in one sentence that names it. Meshes are in metres; OBJ, PLY, STL and
+OFF have z up, GLB has y up by its standard (glTF 2.0, section 3.4) and is turned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.errors import InputError
+from core.geometry import rotation_x
+from core.mesh import TriangleMesh
+from core.mesh_topology import join, topology, weld
+from core.ply import write_ply
+from core.progress import Reporter
+
+MAX_FACES = 2_000_000
+"""More are refused before they are read: at 5 million, simplifying alone would take minutes and gigabytes."""
+MAX_EXTENT_M = 3.0
+MIN_EXTENT_M = 0.005
+MAX_CROWDED_SHARE = 0.02
+"""Share of non-manifold edges above which inside and outside are undefined; good models have up to 0.013."""
+_CENTIMETRES_BELOW = 30.0
+"""A larger number is taken for millimetres: household objects measure 3 to 30 cm, 30 mm and more."""
+_CHUNK_BYTES = 1 << 24
+
+
+def read_mesh(path: Path, reporter: Reporter) -> TriangleMesh:
+    """Read all parts of an OBJ, PLY, STL, OFF or GLB file as one mesh, in metres and z up.
+
+    Equal vertices are joined; faces without area and unused vertices are dropped. A few non-manifold edges or
+    faces wound against their neighbours are told to `reporter`.
+
+    Raises:
+        InputError: the file is missing, unreadable, empty, not in metres, inside out, full of non-manifold
+            edges or has more than two million faces.
+    """
+    parts = read_mesh_parts(path, reporter)
+    mesh = join(parts)
+    if len(parts) > 1 and not all(topology(part).is_closed for part in parts):
+        # Parts of one surface (such as one per material) meet in vertices that the file repeats.
+        mesh = weld(mesh)
+    _check_topology(path, mesh, reporter)
+    return mesh
+
+
+def read_mesh_parts(path: Path, reporter: Reporter) -> tuple[TriangleMesh, ...]:
+    """Read the parts of a file one by one, in its order: the `o` groups of an OBJ, the nodes of a GLB.
+
+    Each is cleaned as in `read_mesh`; how its faces hang together is not judged.
+
+    Raises:
+        InputError: the file is missing, unreadable, empty, not in metres or has more than two million faces.
+    """
+    _check_file(path)
+    reporter.raise_if_cancelled()
+    raw = _load(path)
+    _check_numbers(path, raw)
+    parts = tuple(part for part in map(weld, raw) if len(part.faces))
+    if not parts:
+        raise InputError(f"{path} has no face with an area; export the mesh again.")
+    return parts
+
+
+def write_mesh(path: Path, mesh: TriangleMesh) -> None:
+    """Write a mesh as binary PLY or as OBJ, by the path's ending, every coordinate exactly as it is.
+
+    Raises:
+        InputError: another ending.
+        OSError: the disk is full or the folder cannot be written.
+    """
+    writers = {".ply": write_ply, ".obj": _write_obj}
+    writer = writers.get(path.suffix.lower())
+    if writer is None:
+        raise InputError(f"{path} cannot be written: meshes are written as .ply or .obj.")
+    writer(path, mesh)
+
+
+def _check_file(path: Path) -> None:
+    if not path.is_file():
+        raise InputError(f"There is no mesh file {path}; check the name.")
+    counter = _FACE_COUNTERS.get(path.suffix.lower())
+    if counter is None:
+        known = ", ".join(_FACE_COUNTERS)
+        raise InputError(f"{path} is no mesh file that can be read; convert it to one of {known}.")
+    try:
+        n_faces = counter(path)
+    except (OSError, ValueError) as error:
+        raise _unreadable(path, error) from error
+    _check_face_count(path, n_faces)
+
+
+def _check_face_count(path: Path, n_faces: int) -> None:
+    if n_faces > MAX_FACES:
+        raise InputError(
+            f"{path} has {n_faces:,} faces, more than the {MAX_FACES:,} that can be handled; "
+            "simplify it in a mesh tool (10,000 are plenty) and try again."
+        )
+
+
+def _unreadable(path: Path, error: BaseException) -> InputError:
+    said = " ".join(str(error).split())[:120] or type(error).__name__
+    return InputError(f"{path} cannot be read as a mesh ({said}); export it again.")
+
+
+def _load(path: Path) -> list[TriangleMesh]:
+    import trimesh
+
+    options: dict[str, Any] = {"process": False}
+    if path.suffix.lower() == ".obj":
+        options |= {"split_objects": True, "group_material": False, "skip_materials": True}
+    try:
+        scene = trimesh.load_scene(path, **options)
+        meshes = [part for part in scene.dump() if isinstance(part, trimesh.Trimesh)]
+        parts = [
+            TriangleMesh(np.asarray(mesh.vertices, dtype=float), np.asarray(mesh.faces, dtype=np.int64))
+            for mesh in meshes
+        ]
+    except Exception as error:  # each format's parser raises its own
+        raise _unreadable(path, error) from error
+    if path.suffix.lower() == ".glb":
+        return [TriangleMesh(part.vertices_m @ rotation_x(np.pi / 2).T, part.faces) for part in parts]
+    return parts[::-1] if path.suffix.lower() == ".obj" else parts  # trimesh hands groups out last first
+
+
+def _check_numbers(path: Path, parts: list[TriangleMesh]) -> None:
+    n_faces = sum(len(part.faces) for part in parts)
+    if n_faces == 0:
+        raise InputError(f"{path} has no faces; export it as a triangle mesh, not as points or lines.")
+    _check_face_count(path, n_faces)
+    if any(
+        part.faces.min() < 0 or part.faces.max() >= len(part.vertices_m) for part in parts if len(part.faces)
+    ):
+        raise InputError(f"{path} has faces that name vertices it does not hold; export it again.")
+    used = np.concatenate([part.vertices_m[part.faces].reshape(-1, 3) for part in parts])
+    if not np.isfinite(used).all():
+        raise InputError(f"{path} has vertices that are no finite numbers; repair it in a mesh tool.")
+    _check_size(path, float(np.max(used.max(axis=0) / 2 - used.min(axis=0) / 2) * 2))
+
+
+def _check_size(path: Path, extent_m: float) -> None:
+    if extent_m < MIN_EXTENT_M:
+        raise InputError(
+            f"{path} is only {extent_m * 1000:.3g} mm large, smaller than a candy; meshes must be in metres."
+        )
+    if extent_m <= MAX_EXTENT_M:
+        return
+    if extent_m < _CENTIMETRES_BELOW:
+        hint = "which looks like centimetres; scale it by 0.01"
+    elif extent_m <= 1000 * MAX_EXTENT_M:
+        hint = "which looks like millimetres; scale it by 0.001"
+    else:
+        hint = "which no cell can hold; scale it"
+    raise InputError(f"{path} would be {extent_m:.4g} m large, {hint}, meshes must be in metres.")
+
+
+def _check_topology(path: Path, mesh: TriangleMesh, reporter: Reporter) -> None:
+    facts = topology(mesh)
+    if facts.n_crowded > MAX_CROWDED_SHARE * facts.n_edges:
+        raise InputError(
+            f"{path} is non-manifold: {facts.n_crowded} of its {facts.n_edges} edges belong to more than two "
+            "faces, so inside and outside are undefined; repair it in a mesh tool."
+        )
+    if facts.is_closed and facts.is_consistent and mesh.volume_m3 < 0:
+        raise InputError(
+            f"{path} is inside out: its faces point inwards (volume {mesh.volume_m3 * 1e6:.0f} ml); "
+            "flip them in a mesh tool."
+        )
+    if facts.n_crowded:
+        reporter.warn(f"{path} has {facts.n_crowded} non-manifold edges, shared by more than two faces.")
+    if not facts.is_consistent:
+        reporter.warn(f"{path} has neighbouring faces that point to different sides; its volume is unknown.")
+
+
+def _count_stl(path: Path) -> int:
+    with path.open("rb") as file:
+        head = file.read(84)
+    claimed = int.from_bytes(head[80:84], "little") if len(head) == 84 else 0
+    if path.stat().st_size == 84 + 50 * claimed:
+        return claimed
+    return _count_in_text(path, b"endfacet")
+
+
+def _count_ply(path: Path) -> int:
+    with path.open("rb") as file:
+        header = file.read(1 << 16).partition(b"end_header")[0]
+    for line in header.splitlines():
+        words = line.split()
+        if words[:2] == [b"element", b"face"] and len(words) == 3:
+            return int(words[2])
+    return 0
+
+
+def _count_off(path: Path) -> int:
+    with path.open("rb") as file:
+        head = file.read(1 << 12)
+    words = b" ".join(line.partition(b"#")[0] for line in head.splitlines()).split()
+    return int(words[2]) if len(words) > 2 else 0
+
+
+def _count_obj(path: Path) -> int:
+    return _count_in_text(path, b"\nf ")
+
+
+def _count_in_text(path: Path, word: bytes) -> int:
+    """Occurrences of `word`, read in chunks: counting costs no memory, parsing would."""
+    n, tail = 0, b""
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK_BYTES):
+            n += (tail + chunk).count(word)
+            tail = (tail + chunk)[1 - len(word) :]
+    return n
+
+
+def _count_later(path: Path) -> int:  # noqa: ARG001
+    """GLB holds plain arrays, which load fast; they are counted afterwards."""
+    return 0
+
+
+_FACE_COUNTERS: dict[str, Callable[[Path], int]] = {
+    ".obj": _count_obj,
+    ".ply": _count_ply,
+    ".stl": _count_stl,
+    ".off": _count_off,
+    ".glb": _count_later,
+}
+
+
+def _write_obj(path: Path, mesh: TriangleMesh) -> None:
+    vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in mesh.vertices_m.tolist()]
+    faces = [f"f {a} {b} {c}" for a, b, c in (mesh.faces + 1).tolist()]
+    path.write_text("\n".join([*vertices, *faces, ""]), encoding="ascii")
