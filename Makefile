@@ -1,5 +1,5 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
-.PHONY: run test setup lint unit bench collision-table clean
+.PHONY: run test setup lint unit bench judgement collision-table clean
 
 run: setup
 	.venv/bin/poursight demo
@@ -20,6 +20,9 @@ unit:
 
 bench: setup
 	.venv/bin/python -m tests.benchmarks.stages
+
+judgement: setup
+	.venv/bin/python -m tests.benchmarks.judgement build/judgement
 
 collision-table: setup
 	.venv/bin/python -m tests.benchmarks.collision_table

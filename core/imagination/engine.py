@@ -7,6 +7,9 @@ engine nor carry it, and the engine's greeting must not end up in people's pipes
 from __future__ import annotations
 
 import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 
@@ -19,18 +22,26 @@ class _Engine:
         return value
 
 
-def _load() -> Any:
-    """Import PyBullet with file descriptor 2 closed to the line it prints from C."""
+@contextmanager
+def quiet() -> Iterator[None]:
+    """Keep what C code prints on file descriptor 2 from the terminal; Python's own errors still come through."""
+    sys.stderr.flush()
     kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 2)
     try:
-        import pybullet
-
-        return pybullet
+        yield
     finally:
         os.dup2(kept, 2)
         os.close(kept)
         os.close(null)
+
+
+def _load() -> Any:
+    """Import PyBullet, which greets from C."""
+    with quiet():
+        import pybullet
+
+        return pybullet
 
 
 bullet: Any = _Engine()

@@ -1,0 +1,74 @@
+"""Ctrl-C and kill -9 while the demo runs: out within two seconds, and the same command continues."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+QUICK = [
+    "--object=bowl",
+    "--set=containability.n_max=64",
+    "--set=containability.n_min=40",
+    "--set=pouring.n_packings=1",
+    "--set=pouring.n_pour=20",
+    "--set=evidence.films=false",
+]
+
+
+def start(out):
+    return subprocess.Popen(
+        [sys.executable, "-m", "app.cli", "demo", f"--out={out}", *QUICK],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+        start_new_session=True,
+    )
+
+
+def wait_for_stage(process, stage):
+    for line in process.stderr:
+        if line.startswith(stage):
+            return
+    raise AssertionError(f"{stage} was never reached")
+
+
+def finish(out):
+    process = start(out)
+    stdout, stderr = process.communicate(timeout=240)
+    assert process.returncode == 0, stderr
+    assert "Open container" in stdout
+    assert (out / "report.html").is_file()
+    return stderr
+
+
+@pytest.mark.parametrize("stage", ["scan", "reconstruction", "containability", "pouring", "evidence"])
+def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(stage, tmp_path):
+    out = tmp_path / "demo"
+    process = start(out)
+    wait_for_stage(process, f"{stage}:")
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to the whole group
+    interrupted = time.perf_counter()
+    _, stderr = process.communicate(timeout=30)
+    assert time.perf_counter() - interrupted < 2
+    assert process.returncode == 1
+    assert "Traceback" not in stderr
+    assert "Stopped on request" in stderr
+    said = finish(out)
+    if stage == "evidence":
+        assert "pouring:" not in said, "finished stages must not run again"
+
+
+def test_kill_9_at_a_random_moment_loses_no_finished_stage(tmp_path):
+    out = tmp_path / "demo"
+    generator = random.Random(5)
+    for _ in range(3):
+        process = start(out)
+        time.sleep(generator.uniform(1.0, 8.0))
+        process.kill()
+        process.communicate()
+    finish(out)
