@@ -112,11 +112,14 @@ def demo(
 
 
 @app.command()
-def parameters(preset: PresetOption = None) -> None:
+def parameters(
+    preset: PresetOption = None,
+    markdown: Annotated[bool, typer.Option("--markdown", help="As the table in docs/parameters.md.")] = False,
+) -> None:
     """List every parameter with its value, unit, range and source."""
-    from app import commands
+    from app import listing
 
-    commands.parameters(preset)
+    listing.show_parameters(preset or "default", markdown)
 
 
 @app.command()

@@ -11,15 +11,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.table import Table
-
 from app.answer import answer_table
+from app.listing import short
 from app.terminal import TerminalReporter
 from core.errors import InputError, SessionError
 from core.files import read_json, write_json
 from core.imagination.imagine import WORKER_MODULE, Imagination
-from core.parameters import Parameters, apply_settings, describe, difference, flatten, load_preset
+from core.parameters import Parameters, apply_settings, difference, load_preset
 from core.pipeline import Pipeline
 from core.report import pours_sentence, verdict_sentence
 from core.session import Session
@@ -122,16 +120,6 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
     print(f"Report: {path}")
 
 
-def parameters(preset: str | None) -> None:
-    """Print all parameters."""
-    values = flatten(load_preset(preset or "default"))
-    table = Table("name", "value", "range", "meaning", "source", box=None, pad_edge=False)
-    for fact in describe():
-        table.add_row(fact.name, _short(values[fact.name]), fact.range_text, fact.doc, fact.source)
-    console = Console()
-    console.print(table) if console.is_terminal else Console(width=240).print(table)
-
-
 def _simulated_scan(pipeline: Pipeline, name: str, mesh: Any) -> None:
     """Scan in the simulated cell unless the session already holds this very scan."""
     from hardware.simulation.scan import simulate_scan
@@ -170,7 +158,7 @@ def _print_verdict(result: Imagination) -> None:
 def _print_difference(preset: str, parameters: Parameters) -> None:
     base = load_preset(preset) if not Path(preset).suffix else Parameters()
     for name, (before, after) in difference(parameters, base).items():
-        print(f"{name} = {_short(after)} (preset {preset}: {_short(before)})", file=sys.stderr)
+        print(f"{name} = {short(after)} (preset {preset}: {short(before)})", file=sys.stderr)
 
 
 def _write_answer(path: Path, table: dict[str, Any]) -> None:
@@ -180,7 +168,3 @@ def _write_answer(path: Path, table: dict[str, Any]) -> None:
         raise InputError(
             f"The answer cannot be written to {path} ({error.strerror}); name another file."
         ) from error
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -24,7 +24,7 @@ class _Engine:
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Keep what C code prints on file descriptor 2 from the terminal; Python's own errors still come through."""
+    """Keep what C code prints on file descriptor 2 from the terminal; exceptions still come through."""
     sys.stderr.flush()
     kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 2)

@@ -36,7 +36,7 @@ class FieldFacts:
             return "one of " + ", ".join(self.choices)
         if self.low is None or self.high is None:
             return ""
-        return f"{self.low:g} to {self.high:g}" + (f" {self.unit}" if self.unit else "")
+        return f"{self.low:.10g} to {self.high:.10g}" + (f" {self.unit}" if self.unit else "")
 
 
 def flatten(parameters: Group, prefix: str = "") -> dict[str, Any]:

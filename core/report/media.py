@@ -9,7 +9,7 @@ from io import BytesIO
 
 from core.report.content import Media
 
-_WIDE = 2.0
+_WIDE = 1.6
 """Width over height from which a picture gets a row of its own."""
 
 

@@ -1,4 +1,4 @@
-"""All objects in ../shared/data/objects through `imagine`, mesh input: verdicts, accuracy, AUC (make judgement).
+"""All objects in ../shared/data/objects through `imagine`, mesh input: accuracy and AUC (make judgement).
 
 Usage: python -m tests.benchmarks.judgement OUT [name=value ...]
 OUT keeps a session for every object; those that are misjudged get a report with pictures.
