@@ -32,7 +32,7 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
     """
     health = measure_pose_health(scan.frames, scan.intrinsics, parameters)
     _warn_of_stray_views(health, reporter)
-    volume = _fuse(scan, parameters, choose_truncation_m(parameters, health), reporter)
+    volume = _fuse(scan, parameters, *choose_truncation_m(parameters, health), reporter)
     table = find_table(scan, parameters) if parameters.segmentation == "plane" else None
     part = find_object(volume, scan, parameters, table)
     support_m = _support_height_m(volume, part, scan, parameters, table, reporter)
@@ -42,9 +42,15 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
 
 
 def _fuse(
-    scan: Scan, parameters: ReconstructionParameters, truncation_m: float, reporter: Reporter
+    scan: Scan,
+    parameters: ReconstructionParameters,
+    truncation_m: float,
+    behind_m: float,
+    reporter: Reporter,
 ) -> TsdfVolume:
-    volume = TsdfVolume(parameters.crop_min_m, parameters.crop_max_m, parameters.voxel_m, truncation_m)
+    volume = TsdfVolume(
+        parameters.crop_min_m, parameters.crop_max_m, parameters.voxel_m, truncation_m, behind_m
+    )
     for done, frame in enumerate(scan.frames, start=1):
         reporter.raise_if_cancelled()
         volume.integrate(frame, scan.intrinsics, parameters.max_depth_m)

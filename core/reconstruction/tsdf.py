@@ -32,18 +32,25 @@ class TsdfVolume:
 
     Attributes:
         distance: (X, Y, Z) float32 in [-1, 1]; 1 where nothing was fused yet.
-        weight: (X, Y, Z) uint16, in how many views the voxel was seen (in front of the surface or within the
-            truncation behind it).
+        weight: (X, Y, Z) uint16, in how many views the voxel was seen (in front of the surface or within
+            `behind_m` behind it).
         hidden: (X, Y, Z) bool, True where some view measured a surface in front of the voxel and farther than
-            the truncation.
+            `behind_m`.
     """
 
     def __init__(
-        self, crop_min_m: npt.ArrayLike, crop_max_m: npt.ArrayLike, voxel_m: float, truncation_m: float
+        self,
+        crop_min_m: npt.ArrayLike,
+        crop_max_m: npt.ArrayLike,
+        voxel_m: float,
+        truncation_m: float,
+        behind_m: float | None = None,
     ) -> None:
+        """Start empty; behind a surface a view counts up to `behind_m`, by default the truncation."""
         self.origin_m: FloatArray = np.asarray(crop_min_m, dtype=float)
         self.voxel_m = voxel_m
         self.truncation_m = truncation_m
+        self.behind_m = truncation_m if behind_m is None else behind_m
         size_m = np.asarray(crop_max_m, dtype=float) - self.origin_m
         shape = np.floor(size_m / voxel_m + 1e-6).astype(int)
         if np.prod(shape, dtype=float) > MOST_VOXELS:
@@ -65,6 +72,7 @@ class TsdfVolume:
             self.origin_m.astype(np.float32),
             np.float32(self.voxel_m),
             np.float32(self.truncation_m),
+            np.float32(self.behind_m),
             np.ascontiguousarray(frame.depth_m, dtype=np.float32),
             intrinsics.matrix.astype(np.float32),
             np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
@@ -92,6 +100,7 @@ def _integrate(
     origin_m: npt.NDArray[np.float32],
     voxel_m: np.float32,
     truncation_m: np.float32,
+    behind_m: np.float32,
     depth_m: DepthImage,
     camera: npt.NDArray[np.float32],
     pose: npt.NDArray[np.float32],
@@ -127,7 +136,7 @@ def _integrate(
                 if measured <= SMALLEST_DEPTH_M or measured > max_depth_m:
                     continue
                 difference = measured - camera_z
-                if difference <= -truncation_m:
+                if difference <= -behind_m:
                     hidden[i, j, k] = True
                     continue
                 before = np.float32(weight[i, j, k])

@@ -37,18 +37,22 @@ def test_the_truncation_follows_the_pose_error(simulated, parameters):
         scan = simulated("block", translation_error_m=error_m)
         health = measure_pose_health(scan.frames, scan.intrinsics, parameters)
         chosen.append(choose_truncation_m(parameters, health))
-    assert chosen[0] == pytest.approx(4 * parameters.voxel_m, abs=0.003)
-    assert chosen[0] < chosen[1] < chosen[2] <= 0.03
+    fronts, behinds = zip(*chosen, strict=True)
+    assert fronts[0] == pytest.approx(4 * parameters.voxel_m, abs=0.002)
+    assert behinds[0] == pytest.approx(2.5 * parameters.voxel_m, abs=0.002)
+    assert fronts[0] < fronts[1] < fronts[2] <= 0.03
+    assert behinds[0] < behinds[1] < behinds[2]
+    assert all(behind <= front for front, behind in chosen)
 
 
 def test_without_a_table_nothing_is_said_and_the_truncation_is_the_released_codes(simulated, parameters):
     scan = simulated("block", table=False)
     health = measure_pose_health(scan.frames, scan.intrinsics, parameters)
     assert health.mean_height_m is None and health.sd_height_m is None and health.largest_tilt_rad is None
-    assert choose_truncation_m(parameters, health) == pytest.approx(5 * parameters.voxel_m)
+    assert choose_truncation_m(parameters, health) == pytest.approx([5 * parameters.voxel_m] * 2)
 
 
 def test_a_set_truncation_stays(block_scan, parameters):
     fixed = parameters.model_copy(update={"truncation_m": 0.017})
     health = measure_pose_health(block_scan.frames, block_scan.intrinsics, fixed)
-    assert choose_truncation_m(fixed, health) == 0.017
+    assert choose_truncation_m(fixed, health) == (0.017, 0.017)

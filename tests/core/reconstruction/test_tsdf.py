@@ -70,3 +70,14 @@ def test_the_order_of_views_changes_rounding_only(volume):
 def test_a_grid_that_fits_no_memory_names_the_voxel():
     with pytest.raises(StageError, match=r"1000 million voxels of 1 mm.*reconstruction\.voxel_m"):
         TsdfVolume((0, 0, 0), (1, 1, 1), 0.001, 0.02)
+
+
+def test_behind_the_surface_a_view_counts_only_as_far_as_it_may(volume):
+    short = TsdfVolume((0.4, -0.05, -0.05), (0.6, 0.05, 0.05), 0.005, 0.02, 0.008)
+    for each in (volume, short):
+        each.integrate(wall(0.499), CAMERA, 6.0)
+    x_m = 0.4 + 0.005 * np.arange(40)
+    front = x_m < 0.499
+    assert (short.distance[front, 10, 10] == volume.distance[front, 10, 10]).all()
+    assert (short.weight[:, 10, 10] > 0).tolist() == (x_m < 0.507).tolist()
+    assert short.hidden[:, 10, 10].tolist() == (x_m > 0.507).tolist()
