@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.collision.silence import silent_stdout
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import CollisionParameters
+from core.quiet import quiet
 
 
 def coacd(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[TriangleMesh, ...]:
@@ -17,7 +17,7 @@ def coacd(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[Triangle
     """
     import coacd as library
 
-    with silent_stdout():
+    with quiet(1):
         library.set_log_level("off")
         hulls = library.run_coacd(
             library.Mesh(mesh.vertices_m, mesh.faces),

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.collision.silence import silent_stdout
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import CollisionParameters
+from core.quiet import quiet
 
 
 def vhacd(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[TriangleMesh, ...]:
@@ -15,7 +15,7 @@ def vhacd(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[Triangle
 
     # Faces are one flat row in which each is led by its number of corners, as the library wants it.
     faces = np.insert(mesh.faces, 0, 3, axis=1).astype(np.uint32).ravel()
-    with silent_stdout():
+    with quiet(1):
         hulls = vhacdx.compute_vhacd(
             mesh.vertices_m,
             faces,

@@ -6,11 +6,9 @@ engine nor carry it, and the engine's greeting must not end up in people's pipes
 
 from __future__ import annotations
 
-import os
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import Any
+
+from core.quiet import quiet
 
 
 class _Engine:
@@ -22,23 +20,9 @@ class _Engine:
         return value
 
 
-@contextmanager
-def quiet() -> Iterator[None]:
-    """Keep what C code prints on file descriptor 2 from the terminal; exceptions still come through."""
-    sys.stderr.flush()
-    kept, null = os.dup(2), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(null, 2)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-        os.close(null)
-
-
 def _load() -> Any:
     """Import PyBullet, which greets from C."""
-    with quiet():
+    with quiet(2):
         import pybullet
 
         return pybullet

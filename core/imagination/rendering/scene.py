@@ -15,13 +15,14 @@ import numpy.typing as npt
 
 from core.errors import StageError
 from core.geometry import AnyArray, FloatArray
-from core.imagination.engine import bullet, quiet
+from core.imagination.engine import bullet
 from core.imagination.recording import Float32Array
 from core.imagination.rendering.camera import Camera, light_direction, view_direction
 from core.imagination.rendering.shapes import candy_mesh, write_ground_obj, write_obj
 from core.imagination.rotations import quaternion_of
 from core.mesh import TriangleMesh
 from core.parameters.imagination import ParticleParameters
+from core.quiet import quiet
 
 EGL, TINY = "EGL", "TinyRenderer"
 
@@ -218,6 +219,6 @@ def load_egl(client: int) -> bool:
     plugin = importlib.util.find_spec("eglRenderer")
     if plugin is None or plugin.origin is None:
         return False
-    with quiet():
+    with quiet(2):
         loaded: int = bullet.loadPlugin(plugin.origin, "_eglRendererPlugin", physicsClientId=client)
     return loaded >= 0
