@@ -59,9 +59,9 @@ class SolverParameters(Group):
         240, "Steps per second.", unit="Hz", source=f"{PAPER}, Sec. III-A", low=60, high=4000
     )
     substeps: int = quantity(
-        4,
-        "Most parts a step is computed in, so that no candy near the object moves on by more than half its "
-        "thickness.",
+        10,
+        "Most parts a step is computed in, so that no candy near the object moves on by more than 0.9 mm: "
+        "Bullet sees a triangle from 1 mm away.",
         unit="",
         source=OURS,
         low=1,
