@@ -37,6 +37,11 @@ def grid_counts(extents_m: FloatArray, pitch_m: FloatArray, n_max: int, n_min: i
     return n_x, n_y, ceil(n_min / (n_x * n_y)) if n_x * n_y < n_min else 1
 
 
+def pitch_m(particle: ParticleParameters, parameters: ContainabilityParameters) -> FloatArray:
+    """Extents (3,) of a candy's AABB with its margin."""
+    return particle_extents_m(particle) + 2 * parameters.pitch_margin_m
+
+
 def drop_positions(
     aabb_m: FloatArray,
     particle: ParticleParameters,
@@ -45,8 +50,7 @@ def drop_positions(
 ) -> FloatArray:
     """Return (N_drop, 3) positions in a grid over the top face of `aabb_m` (2, 3), lightly jittered."""
     low, high = aabb_m
-    pitch = particle_extents_m(particle) + 2 * parameters.pitch_margin_m
-    n_x, n_y, n_z = grid_counts(high - low, pitch, parameters.n_max, parameters.n_min)
+    n_x, n_y, n_z = grid_counts(high - low, pitch_m(particle, parameters), parameters.n_max, parameters.n_min)
     layers = high[2] + parameters.layer_height_m + parameters.layer_spacing_m * np.arange(n_z)
     z, y, x = np.meshgrid(layers, _spread(low[1], high[1], n_y), _spread(low[0], high[0], n_x), indexing="ij")
     positions = np.column_stack([x.ravel(), y.ravel(), z.ravel()])

@@ -12,7 +12,8 @@ from core.imagination.body import BodyFile, body_files
 from core.imagination.choice import choose_pour
 from core.imagination.containability import ObjectAtRest, drop_task
 from core.imagination.cup import cup_parts
-from core.imagination.packing import CupRun, packing_task
+from core.imagination.drop_grid import grid_counts, pitch_m
+from core.imagination.packing import CupRun, pack_cup, packing_task
 from core.imagination.pouring import imagine_pours
 from core.imagination.results import Containability, PourChoice, PourGrid
 from core.parameters import Parameters
@@ -45,6 +46,7 @@ def imagine(
     cup = cup_parts(parameters.pouring.cup)
     with body_files(object=(model.parts, not model.is_convex), cup=(cup, False)) as files:
         target = object_at_rest(model, files["object"], parameters)
+        _check(target, parameters)
         started = perf_counter()
         # The cup runs need nothing of the object: they fill the core that the drop leaves idle.
         packings = range(parameters.pouring.n_packings) if parameters.pouring.mode == "replay" else range(0)
@@ -61,6 +63,14 @@ def imagine(
         )
         choice = choose_pour(grid, parameters.pouring.cup)
         return Imagination(containability, grid, choice, dropped - started, perf_counter() - dropped)
+
+
+def _check(target: ObjectAtRest, parameters: Parameters) -> None:
+    """Find out what cannot be imagined before a worker starts, and always in the same order."""
+    settings = parameters.containability
+    extents = target.aabb_m[1] - target.aabb_m[0]
+    grid_counts(extents, pitch_m(parameters.particle, settings), settings.n_max, settings.n_min)
+    pack_cup(parameters, 0)
 
 
 def object_at_rest(model: CollisionModel, body: BodyFile, parameters: Parameters) -> ObjectAtRest:
