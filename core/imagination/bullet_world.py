@@ -2,7 +2,7 @@
 
 What made it fast and true was measured (docs/decisions/0001-physics-engine-settings.md): particles and object
 as maximal-coordinate bodies, few solver iterations, short contacts, no ground (what falls past the object is
-taken out), the object moved kinematically, and finer steps only while a particle is fast.
+taken out), bodies driven with their velocity, and finer steps only while a particle is fast.
 """
 
 from __future__ import annotations
@@ -109,13 +109,23 @@ class BulletWorld:
         angular_velocity_rad_s: FloatArray,
     ) -> None:
         """Place a driven body for the next step, with the velocities that its motion has there."""
-        # The step adds gravity to every dynamic body; what is taken off here makes up for it.
-        held = velocity_m_s - self._gravity_m_s2 / self._solver.rate_hz
         bullet.resetBasePositionAndOrientation(
             body_id, position_m.tolist(), quaternion.tolist(), physicsClientId=self._client
         )
         bullet.resetBaseVelocity(
-            body_id, held.tolist(), angular_velocity_rad_s.tolist(), physicsClientId=self._client
+            body_id,
+            velocity_m_s.tolist(),
+            angular_velocity_rad_s.tolist(),
+            physicsClientId=self._client,
+        )
+        # Held against the force field, in every part of the step.
+        bullet.applyExternalForce(
+            body_id,
+            -1,
+            (-_DRIVEN_MASS_KG * self._gravity_m_s2).tolist(),
+            position_m.tolist(),
+            bullet.WORLD_FRAME,
+            physicsClientId=self._client,
         )
 
     def add_particle(self, pose: FloatArray, velocity: FloatArray | None = None) -> int:
