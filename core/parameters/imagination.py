@@ -68,7 +68,7 @@ class SolverParameters(Group):
         high=32,
     )
     iterations: int = quantity(
-        10, "Iterations of the contact solver.", unit="", source=f"{OURS}; Bullet: 50", low=1, high=500
+        20, "Iterations of the contact solver.", unit="", source=f"{OURS}; Bullet: 50", low=1, high=500
     )
     contact_breaking_m: float = quantity(
         0.001,
