@@ -130,8 +130,16 @@ class Impatient(Reporter):
 
 def print_table(rows: dict[tuple[str, str], Row], labels: dict[str, str], chosen: list[str]) -> None:
     """Print one line a variant, then one line an object."""
-    print("| variant | Omega off by, mean / worst | through a wall | accuracy at 0 | model s | drop CPU s |")
-    print("|---|---|---|---|---|---|")
+    columns = (
+        "objects",
+        "Omega off by, mean / worst",
+        "through a wall",
+        "accuracy at 0",
+        "model s",
+        "drop CPU s",
+    )
+    print("| variant | " + " | ".join(columns) + " |")
+    print("|---" * (len(columns) + 1) + "|")
     for variant in VARIANTS:
         names = [name for name in chosen if (name, variant) in rows]
         mine = [rows[name, variant] for name in names]
