@@ -20,7 +20,7 @@ from core.imagination.imagine import WORKER_MODULE, Imagination
 from core.parameters import Parameters, apply_settings, difference, load_preset
 from core.pipeline import Pipeline
 from core.report import pours_sentence, verdict_sentence
-from core.session import Session
+from core.session import Session, explained
 from core.workers import WorkerPool
 
 PARAMETERS_FILE = "parameters.json"
@@ -146,7 +146,8 @@ def _working(
         _print_difference(preset, chosen)
         session = Session.open(folder) if existing else Session.create_or_open(folder)
         with session:
-            write_json(folder / PARAMETERS_FILE, {"preset": preset, "parameters": changes})
+            with explained(folder):
+                write_json(folder / PARAMETERS_FILE, {"preset": preset, "parameters": changes})
             yield Pipeline(session, chosen, pool, reporter, preset)
 
 

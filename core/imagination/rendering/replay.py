@@ -27,10 +27,6 @@ class Replay:
     retained: BoolArray
     ground_m: float
 
-    def moment_at(self, time_s: float) -> int:
-        """Index of the recorded moment nearest to `time_s`."""
-        return int(np.abs(self.recording.time_s - time_s).argmin())
-
 
 def make_replay(recording: Recording, retained: BoolArray, ground_m: float, candy_height_m: float) -> Replay:
     """Prepare a recording; the imagination has no ground, so a lost candy is laid where it passes ours."""

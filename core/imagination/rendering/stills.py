@@ -16,7 +16,6 @@ from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.workers import report_fraction
 
-STILL_NAMES = ("start", "falling", "settled", "rotated", "pushed", "end")
 _SUPERSAMPLING = 2
 
 
