@@ -25,5 +25,9 @@ class WorkerError(PoursightError):
     """A worker process died or could not be started."""
 
 
+class MotionError(PoursightError):
+    """The arm cannot go where it should, or not without touching something."""
+
+
 class Cancelled(PoursightError):
     """The user asked to stop; what was finished before is kept."""

@@ -1,0 +1,1 @@
+"""Where the arm can go: its kinematics, its clearance, clear ways, and camera views within reach."""

@@ -1,0 +1,126 @@
+"""Closed-form inverse kinematics of UR arms: all branches of many poses at once.
+
+Shoulder left or right, wrist this or that way round, elbow up or down: up to eight branches. The order of the
+solution (joints 1, 5, 6, then the planar arm 2, 3, 4) is the usual one for this geometry, for example
+Hawkins, "Analytic Inverse Kinematics for the Universal Robots UR-5/UR-10 Arms", 2013.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from core.geometry import BoolArray, FloatArray
+from core.motion.arm_models import ArmModel
+from core.motion.kinematics import TURN_RAD, flange_pose, joint_pose
+
+N_BRANCHES = 8
+_SAME_RAD = 1e-6
+"""Branches that are nearer to each other are one: they merge where the arm is stretched."""
+_WRIST_SINE = 1e-6
+"""Below this sine of joint 5, the axes of joints 4 and 6 count as parallel."""
+_COSINE_TOLERANCE = 1e-9
+"""A cosine this much beyond 1 is rounding at the edge of the reach, not a pose out of reach."""
+_POSE_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True)
+class InverseBranches:
+    """All configurations that bring the flange to N poses.
+
+    Attributes:
+        joints_rad: (N, 8, 6), each joint within half a turn of 0; zeros where there is no branch.
+        found: (N, 8) whether there is a branch; each was verified by forward kinematics (1e-6 m, 1e-6 rad).
+        undetermined: (N, 8) whether the pose is wrist-singular in this branch: joint 6 could stand anywhere
+            with joints 2 to 4 making up for it. The branch given is the one with joint 6 at 0, if there is
+            one.
+    """
+
+    joints_rad: FloatArray
+    found: BoolArray
+    undetermined: BoolArray
+
+
+def inverse_kinematics(arm: ArmModel, T_base_flange: FloatArray) -> InverseBranches:
+    """Find all branches for poses (N, 4, 4); a pose out of reach has none, a singular one is marked."""
+    n = len(T_base_flange)
+    joints = np.zeros((n, N_BRANCHES, 6))
+    found = np.zeros((n, N_BRANCHES), dtype=bool)
+    undetermined = np.zeros((n, N_BRANCHES), dtype=bool)
+    for k, signs in enumerate(product((1, -1), repeat=3)):
+        joints[:, k], found[:, k], undetermined[:, k] = _branch(arm, T_base_flange, *signs)
+    found &= _reaches(arm, joints, T_base_flange)
+    joints[~found] = 0
+    return InverseBranches(joints, found, undetermined)
+
+
+def configurations(arm: ArmModel, T_base_flange: FloatArray) -> FloatArray:
+    """Return the different configurations (K, 6), K from 0 to 8, for one pose (4, 4)."""
+    branches = inverse_kinematics(arm, T_base_flange[None])
+    different: list[FloatArray] = []
+    for joints in branches.joints_rad[0, branches.found[0]]:
+        if all(np.abs(_half_turn(joints - other)).max() > _SAME_RAD for other in different):
+            different.append(joints)
+    return np.array(different).reshape(-1, 6)
+
+
+def _branch(
+    arm: ArmModel, T: FloatArray, shoulder: int, wrist: int, elbow: int
+) -> tuple[FloatArray, BoolArray, BoolArray]:
+    """One branch by its three signs: joints (N, 6), whether it exists (N,), whether joint 6 is free (N,)."""
+    joint1, reaches_shoulder = _joint1(arm, T, shoulder)
+    joint5, joint6, is_free = _joints_5_6(T, joint1, wrist)
+    wrist_pose = joint_pose(arm, 4, joint5) @ joint_pose(arm, 5, joint6)
+    T_1_4 = np.linalg.inv(joint_pose(arm, 0, joint1)) @ T @ np.linalg.inv(wrist_pose)
+    joint2, joint3, joint4, reaches_elbow = _planar_joints(arm, T_1_4, elbow)
+    joints = np.stack([joint1, joint2, joint3, joint4, joint5, joint6], axis=-1)
+    return _half_turn(joints), reaches_shoulder & reaches_elbow, is_free
+
+
+def _joint1(arm: ArmModel, T: FloatArray, shoulder: int) -> tuple[FloatArray, BoolArray]:
+    """The vertical plane of the arm passes the wrist's centre at the distance d4."""
+    wrist_center = T[:, :3, 3] - arm.d_m[5] * T[:, :3, 2]
+    distance = np.hypot(wrist_center[:, 0], wrist_center[:, 1])
+    sine = arm.d_m[3] / np.maximum(distance, 1e-12)
+    aside = np.arcsin(np.minimum(sine, 1))
+    towards = np.arctan2(wrist_center[:, 1], wrist_center[:, 0])
+    joint1 = towards + (aside if shoulder > 0 else np.pi - aside)
+    return joint1, sine <= 1 + _COSINE_TOLERANCE
+
+
+def _joints_5_6(T: FloatArray, joint1: FloatArray, wrist: int) -> tuple[FloatArray, FloatArray, BoolArray]:
+    """Joint 2's axis, seen from the flange, tells joints 5 and 6."""
+    axis2 = np.stack([np.sin(joint1), -np.cos(joint1), np.zeros_like(joint1)], axis=-1)
+    in_flange = np.einsum("nij,ni->nj", T[:, :3, :3], axis2)
+    sine = np.hypot(in_flange[:, 0], in_flange[:, 1])
+    is_free = sine < _WRIST_SINE
+    joint5 = wrist * np.arctan2(sine, in_flange[:, 2])
+    joint6 = np.arctan2(-wrist * in_flange[:, 1], wrist * in_flange[:, 0])
+    return joint5, np.where(is_free, 0.0, joint6), is_free
+
+
+def _planar_joints(
+    arm: ArmModel, T_1_4: FloatArray, elbow: int
+) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Joints 2, 3 and 4 are a planar arm of two links that carries the wrist."""
+    a2, a3 = arm.a_m[1], arm.a_m[2]
+    x, y = T_1_4[:, 0, 3], T_1_4[:, 1, 3]
+    cosine = (x**2 + y**2 - a2**2 - a3**2) / (2 * a2 * a3)
+    joint3 = elbow * np.arccos(np.clip(cosine, -1, 1))
+    joint2 = np.arctan2(y, x) - np.arctan2(a3 * np.sin(joint3), a2 + a3 * np.cos(joint3))
+    together = np.arctan2(T_1_4[:, 1, 0], T_1_4[:, 0, 0])
+    return joint2, joint3, together - joint2 - joint3, np.abs(cosine) <= 1 + _COSINE_TOLERANCE
+
+
+def _half_turn(angle_rad: FloatArray) -> FloatArray:
+    """The same angles in [-pi, pi]."""
+    return angle_rad - TURN_RAD * np.round(angle_rad / TURN_RAD)
+
+
+def _reaches(arm: ArmModel, joints: FloatArray, T_base_flange: FloatArray) -> BoolArray:
+    """Which (N, 8) configurations (N, 8, 6) bring the flange to its pose (N, 4, 4)."""
+    error = np.abs(flange_pose(arm, joints) - T_base_flange[:, None])
+    reaches: BoolArray = error.max(axis=(-1, -2)) < _POSE_TOLERANCE
+    return reaches
