@@ -1,5 +1,5 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
-.PHONY: run test setup lint unit bench judgement collision-table clean
+.PHONY: run test setup lint unit bench accuracy judgement collision-table pose-errors clean
 
 run: setup
 	.venv/bin/poursight demo
@@ -21,11 +21,17 @@ unit:
 bench: setup
 	.venv/bin/python -m tests.benchmarks.stages
 
+accuracy: setup
+	.venv/bin/python -m tests.benchmarks.accuracy
+
 judgement: setup
 	.venv/bin/python -m tests.benchmarks.judgement build/judgement
 
 collision-table: setup
 	.venv/bin/python -m tests.benchmarks.collision_table
+
+pose-errors: setup
+	.venv/bin/python -m tests.benchmarks.pose_errors
 
 clean:
 	rm -rf .venv build *.egg-info

@@ -16,7 +16,7 @@ class ReconstructionParameters(Group):
     """TSDF fusion and segmentation of the object, in the robot's base frame."""
 
     voxel_m: float = quantity(
-        0.003, "Edge of a voxel.", unit="m", source=f"{OURS}; {CODE}: 0.004", low=0.001, high=0.02
+        0.002, "Edge of a voxel.", unit="m", source=f"{OURS}; {CODE}: 0.004", low=0.001, high=0.02
     )
     truncation_m: float | None = quantity(
         None,
@@ -26,11 +26,15 @@ class ReconstructionParameters(Group):
         low=0.002,
         high=0.1,
     )
-    crop_min_m: Point = quantity(
-        (-0.30, -0.55, 0.03), "Lower corner of the box that holds the object.", unit="m", source=CODE
+    crop_min_m: Point | None = quantity(
+        None,
+        "Lower corner of the box that holds the object; none: the scan's own, or else the released code's "
+        "grid from (-0.30, -0.55, 0.03) to (0.18, -0.15, 0.35).",
+        unit="m",
+        source=f"{OURS}; {CODE}: its grid",
     )
-    crop_max_m: Point = quantity(
-        (0.18, -0.15, 0.35), "Upper corner of the box that holds the object.", unit="m", source=CODE
+    crop_max_m: Point | None = quantity(
+        None, "Upper corner of that box; given or left out with the lower one.", unit="m", source=OURS
     )
     unseen: Literal["solid", "free"] = choice(
         "solid",
@@ -59,12 +63,21 @@ class ReconstructionParameters(Group):
         low=0,
         high=0.05,
     )
+    refine_poses: bool = choice(
+        True,
+        "Whether the views' poses are corrected until the surfaces they show agree.",
+        source=f"{OURS}; {CODE}: no",
+    )
     max_depth_m: float = quantity(
         6.0, "Depth beyond which a pixel is ignored.", unit="m", source=CODE, low=0.1, high=20
     )
 
     @model_validator(mode="after")
     def _box_has_volume(self) -> ReconstructionParameters:
+        if self.crop_min_m is None and self.crop_max_m is None:
+            return self
+        if self.crop_min_m is None or self.crop_max_m is None:
+            raise ValueError("crop_min_m and crop_max_m are given both or not at all")
         if any(high - low < 0.01 for low, high in zip(self.crop_min_m, self.crop_max_m, strict=True)):
             raise ValueError("crop_max_m must exceed crop_min_m by at least 0.01 m in every direction")
         return self

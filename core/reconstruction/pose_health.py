@@ -12,8 +12,9 @@ import numpy as np
 
 from core.geometry import FloatArray
 from core.parameters.reconstruction import ReconstructionParameters
-from core.reconstruction.planes import find_plane
-from core.scan.model import Intrinsics, RgbdFrame
+from core.reconstruction.planes import Plane, find_plane
+from core.scan.crop_box import crop_box_of
+from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
 
 STRIDE = 6
 SURROUNDINGS_M = 0.3
@@ -59,23 +60,41 @@ class PoseHealth:
         return np.array([view.height_m for view in self.views if view.height_m is not None], dtype=float)
 
 
-def measure_pose_health(
-    frames: Sequence[RgbdFrame], intrinsics: Intrinsics, parameters: ReconstructionParameters
-) -> PoseHealth:
+def measure_pose_health(scan: Scan, parameters: ReconstructionParameters) -> PoseHealth:
     """Fit the table in every view, near the crop box."""
-    return PoseHealth(tuple(measure_view_health(frame, intrinsics, parameters) for frame in frames))
+    return pose_health_of(scan, find_tables(scan, parameters), crop_box_of(scan, parameters))
+
+
+def find_tables(scan: Scan, parameters: ReconstructionParameters) -> tuple[Plane | None, ...]:
+    """Fit the table in every view, near the crop box; none where it is not seen."""
+    box = crop_box_of(scan, parameters)
+    return tuple(_find_table(frame, scan.intrinsics, box, parameters.max_depth_m) for frame in scan.frames)
+
+
+def pose_health_of(scan: Scan, tables: Sequence[Plane | None], box: CropBox) -> PoseHealth:
+    """Judge the poses by the tables that were found."""
+    views = zip(scan.frames, tables, strict=True)
+    return PoseHealth(tuple(_view_health(frame.name, table, box) for frame, table in views))
 
 
 def measure_view_health(
-    frame: RgbdFrame, intrinsics: Intrinsics, parameters: ReconstructionParameters
+    frame: RgbdFrame, intrinsics: Intrinsics, box: CropBox, max_depth_m: float
 ) -> ViewHealth:
-    """Fit the table in one view; for a live warning while scanning, too."""
-    low, high = np.array(parameters.crop_min_m[:2]), np.array(parameters.crop_max_m[:2])
-    points = frame.points_m(intrinsics, max_depth_m=parameters.max_depth_m, stride=STRIDE)
+    """Fit the table in one view, around the crop box; for a live warning while scanning, too."""
+    return _view_health(frame.name, _find_table(frame, intrinsics, box, max_depth_m), box)
+
+
+def _find_table(frame: RgbdFrame, intrinsics: Intrinsics, box: CropBox, max_depth_m: float) -> Plane | None:
+    low, high = np.array(box.min_m[:2]), np.array(box.max_m[:2])
+    points = frame.points_m(intrinsics, max_depth_m=max_depth_m, stride=STRIDE)
     is_near = (points[:, :2] > low - SURROUNDINGS_M) & (points[:, :2] < high + SURROUNDINGS_M)
     points = points[is_near.all(axis=1)]
     plane = find_plane(points) if len(points) >= FEWEST_POINTS else None
-    if plane is None or plane.share < SMALLEST_SHARE:
-        return ViewHealth(frame.name, None, None)
-    middle_x, middle_y = (low + high) / 2
-    return ViewHealth(frame.name, float(plane.height_m(middle_x, middle_y)), plane.tilt_rad)
+    return plane if plane is not None and plane.share >= SMALLEST_SHARE else None
+
+
+def _view_health(name: str, table: Plane | None, box: CropBox) -> ViewHealth:
+    if table is None:
+        return ViewHealth(name, None, None)
+    middle_x, middle_y = (np.array(box.min_m[:2]) + np.array(box.max_m[:2])) / 2
+    return ViewHealth(name, float(table.height_m(middle_x, middle_y)), table.tilt_rad)

@@ -13,6 +13,7 @@ from core.parameters.reconstruction import ReconstructionParameters
 from core.reconstruction.clusters import largest_cluster
 from core.reconstruction.planes import Plane, find_plane
 from core.reconstruction.tsdf import SURFACE_BAND, TsdfVolume
+from core.scan.crop_box import crop_box_of
 from core.scan.model import Scan
 
 CLUSTER_GAP_M = 0.015
@@ -101,7 +102,8 @@ def touched_sides(part: Part, volume: TsdfVolume, *, with_bottom: bool) -> list[
 
 def _points_in_box(scan: Scan, parameters: ReconstructionParameters) -> FloatArray:
     points = _all_points(scan, parameters)
-    low, high = np.array(parameters.crop_min_m), np.array(parameters.crop_max_m)
+    box = crop_box_of(scan, parameters)
+    low, high = np.array(box.min_m), np.array(box.max_m)
     return points[((points >= low) & (points <= high)).all(axis=1)]
 
 

@@ -2,77 +2,126 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
 from core.errors import StageError
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
+from core.reconstruction.depth_planes import PlaneImage
+from core.reconstruction.fusion import Steps, block_of, fit_all_planes, fuse, whole
 from core.reconstruction.planes import Plane
 from core.reconstruction.platform import estimate_platform_height_m
-from core.reconstruction.pose_health import PoseHealth, measure_pose_health
+from core.reconstruction.pose_health import PoseHealth, find_tables, pose_health_of
+from core.reconstruction.refinement import refine_poses
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.segmentation import Part, find_object, find_table, touched_sides
 from core.reconstruction.surface import extract_surface, largest_piece
-from core.reconstruction.truncation import choose_truncation_m
+from core.reconstruction.truncation import choose_truncation, view_error_m
 from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import cut_at_height, cut_at_table, fill_unseen
+from core.reconstruction.view_surfaces import view_surfaces
+from core.scan.crop_box import crop_box_of
 from core.scan.model import Scan
 
-STAGE = "reconstruction"
+COARSE_VOXEL_M = 0.004
+"""Edge of the voxels in which the object is looked for."""
 STRAY_VIEW_M = 0.01
 
 
 def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Reporter) -> Reconstruction:
     """Fuse all views, cut the object out and close its surface.
 
+    The object is found in coarse voxels of the whole crop box, the poses are corrected, and the object's
+    block is fused again in fine voxels; with a set truncation one volume is both, as in the released code.
+
     Raises:
         StageError: the crop box holds no object, or too many voxels.
         Cancelled: the user asked to stop.
     """
-    health = measure_pose_health(scan.frames, scan.intrinsics, parameters)
+    tables = find_tables(scan, parameters)
+    health = pose_health_of(scan, tables, crop_box_of(scan, parameters))
     _warn_of_stray_views(health, reporter)
-    volume = _fuse(scan, parameters, *choose_truncation_m(parameters, health), reporter)
+    steps = Steps(reporter, len(scan.frames) * _n_fusions(parameters))
+    planes = None if _is_plain(parameters) else fit_all_planes(scan, parameters.max_depth_m, reporter)
+    found = _find(scan, parameters, view_error_m(health, None), steps)
+    refinement = None
+    if parameters.refine_poses and planes is not None:
+        block = block_of(found.volume, found.part)
+        surfaces = view_surfaces(scan, planes, block)
+        refinement = refine_poses(scan, surfaces, tables, health.sd_height_m, block, reporter)
+        scan = refinement.applied_to(scan)
+        found = _find(scan, parameters, view_error_m(health, refinement), steps)
+    support_m = _support_height_m(found, scan, parameters, reporter)
+    _warn_if_cut_off(found.volume, found.part, parameters, support_m, reporter)
+    if parameters.truncation_m is None:
+        found = _fuse_finely(
+            found, scan, parameters, view_error_m(health, refinement), support_m, planes, steps
+        )
+    mesh = _object_mesh(found, parameters, support_m)
+    return Reconstruction(mesh, support_m, found.volume.truncation_m, health, refinement)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """The object's part of a volume; the table is known with plane segmentation only."""
+
+    volume: TsdfVolume
+    part: Part
+    table: Plane | None
+
+
+def _is_plain(parameters: ReconstructionParameters) -> bool:
+    """Whether the released code's arithmetic is all that is asked for."""
+    return parameters.truncation_m is not None and not parameters.refine_poses
+
+
+def _n_fusions(parameters: ReconstructionParameters) -> int:
+    return 1 + parameters.refine_poses + (parameters.truncation_m is None)
+
+
+def _find(scan: Scan, parameters: ReconstructionParameters, error_m: float | None, steps: Steps) -> _Found:
+    is_set = parameters.truncation_m is not None
+    voxel_m = parameters.voxel_m if is_set else max(parameters.voxel_m, COARSE_VOXEL_M)
+    truncation = choose_truncation(parameters, voxel_m, error_m)
+    volume = fuse(scan, crop_box_of(scan, parameters), voxel_m, truncation, parameters.max_depth_m, steps)
     table = find_table(scan, parameters) if parameters.segmentation == "plane" else None
-    part = find_object(volume, scan, parameters, table)
-    support_m = _support_height_m(volume, part, scan, parameters, table, reporter)
-    _warn_if_cut_off(volume, part, parameters, support_m, reporter)
-    mesh = _object_mesh(volume, part, parameters, table, support_m)
-    return Reconstruction(mesh, support_m, volume.truncation_m, health)
+    return _Found(volume, find_object(volume, scan, parameters, table), table)
 
 
-def _fuse(
+def _fuse_finely(
+    found: _Found,
     scan: Scan,
     parameters: ReconstructionParameters,
-    truncation_m: float,
-    behind_m: float,
-    reporter: Reporter,
-) -> TsdfVolume:
-    volume = TsdfVolume(
-        parameters.crop_min_m, parameters.crop_max_m, parameters.voxel_m, truncation_m, behind_m
-    )
-    for done, frame in enumerate(scan.frames, start=1):
-        reporter.raise_if_cancelled()
-        volume.integrate(frame, scan.intrinsics, parameters.max_depth_m)
-        reporter.progress(STAGE, done, len(scan.frames))
-    return volume
+    error_m: float | None,
+    support_m: float,
+    planes: Sequence[PlaneImage] | None,
+    steps: Steps,
+) -> _Found:
+    truncation = choose_truncation(parameters, parameters.voxel_m, error_m)
+    block = block_of(found.volume, _down_to_support(found, support_m))
+    volume = fuse(scan, block, parameters.voxel_m, truncation, parameters.max_depth_m, steps, planes)
+    return _Found(volume, whole(volume), found.table)
+
+
+def _down_to_support(found: _Found, support_m: float) -> Part:
+    return found.part.down_to(int((support_m - found.volume.origin_m[2]) / found.volume.voxel_m) - 1)
 
 
 def _support_height_m(
-    volume: TsdfVolume,
-    part: Part,
-    scan: Scan,
-    parameters: ReconstructionParameters,
-    table: Plane | None,
-    reporter: Reporter,
+    found: _Found, scan: Scan, parameters: ReconstructionParameters, reporter: Reporter
 ) -> float:
-    if table is not None:
-        middle = volume.centers_m((part.seen.min(axis=0) + part.seen.max(axis=0)) // 2)
-        return float(table.height_m(middle[0], middle[1]))
+    if found.table is not None:
+        seen = found.part.seen
+        middle = found.volume.centers_m((seen.min(axis=0) + seen.max(axis=0)) // 2)
+        return float(found.table.height_m(middle[0], middle[1]))
     for known in (parameters.platform_height_m, scan.platform_height_m):
         if known is not None:
             return known
-    estimate_m = estimate_platform_height_m(volume, part, scan, parameters)
+    estimate_m = estimate_platform_height_m(found.volume, found.part, scan, parameters)
     if parameters.unseen == "solid":
         reporter.warn(
             f"The platform's height is not known; {estimate_m * 1000:.0f} mm is taken, where the object's "
@@ -81,16 +130,10 @@ def _support_height_m(
     return estimate_m
 
 
-def _object_mesh(
-    volume: TsdfVolume,
-    part: Part,
-    parameters: ReconstructionParameters,
-    table: Plane | None,
-    support_m: float,
-) -> TriangleMesh:
+def _object_mesh(found: _Found, parameters: ReconstructionParameters, support_m: float) -> TriangleMesh:
+    volume, table = found.volume, found.table
     solid = parameters.unseen == "solid"
-    if solid or table is not None:
-        part = part.down_to(int((support_m - volume.origin_m[2]) / volume.voxel_m) - 1)
+    part = _down_to_support(found, support_m) if solid or table is not None else found.part
     distance = fill_unseen(volume, part) if solid else volume.distance[part.slices]
     if table is not None:
         distance = cut_at_table(distance, volume, part, table, parameters.plane_margin_m)

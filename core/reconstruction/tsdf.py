@@ -19,8 +19,12 @@ from core.scan.model import DepthImage, Intrinsics, RgbdFrame
 DistanceGrid = npt.NDArray[np.float32]
 
 MOST_VOXELS = 200_000_000
-"""About 1.4 GB of volume; what comes after needs as much again."""
+"""About 2.2 GB of volume; what comes after needs as much again."""
 SMALLEST_DEPTH_M = 1e-4
+LEAST_FREE_WEIGHT = np.float32(0.1)
+"""Of a view far in front of a surface, with a falloff: free space must still carve."""
+FAR_IN_FRONT = np.float32(np.sqrt(-np.log(LEAST_FREE_WEIGHT)))
+"""In falloffs, where the weight has fallen to it."""
 SURFACE_BAND = 0.2
 """Share of the truncation within which an observed voxel counts as surface (released code)."""
 
@@ -32,6 +36,7 @@ class TsdfVolume:
 
     Attributes:
         distance: (X, Y, Z) float32 in [-1, 1]; 1 where nothing was fused yet.
+        evidence: (X, Y, Z) float32, sum of the weights with which views count in `distance`.
         weight: (X, Y, Z) uint16, in how many views the voxel was seen (in front of the surface or within
             `behind_m` behind it).
         hidden: (X, Y, Z) bool, True where some view measured a surface in front of the voxel and farther than
@@ -45,12 +50,23 @@ class TsdfVolume:
         voxel_m: float,
         truncation_m: float,
         behind_m: float | None = None,
+        falloff_m: float = np.inf,
     ) -> None:
-        """Start empty; behind a surface a view counts up to `behind_m`, by default the truncation."""
+        """Start empty.
+
+        Args:
+            crop_min_m: lower corner (3,) in the base frame.
+            crop_max_m: upper corner (3,).
+            voxel_m: edge of a voxel.
+            truncation_m: distance in front of a surface beyond which it does not matter.
+            behind_m: how far behind a surface a view counts; by default the truncation.
+            falloff_m: distance from a surface at which a view's weight has fallen to 1/e; by default never.
+        """
         self.origin_m: FloatArray = np.asarray(crop_min_m, dtype=float)
         self.voxel_m = voxel_m
         self.truncation_m = truncation_m
         self.behind_m = truncation_m if behind_m is None else behind_m
+        self.falloff_m = falloff_m
         size_m = np.asarray(crop_max_m, dtype=float) - self.origin_m
         shape = np.floor(size_m / voxel_m + 1e-6).astype(int)
         if np.prod(shape, dtype=float) > MOST_VOXELS:
@@ -60,20 +76,31 @@ class TsdfVolume:
                 "enlarge reconstruction.voxel_m or shrink the crop box."
             )
         self.distance: DistanceGrid = np.ones(shape, dtype=np.float32)
+        self.evidence: DistanceGrid = np.zeros(shape, dtype=np.float32)
         self.weight: npt.NDArray[np.uint16] = np.zeros(shape, dtype=np.uint16)
         self.hidden: BoolArray = np.zeros(shape, dtype=np.bool_)
 
-    def integrate(self, frame: RgbdFrame, intrinsics: Intrinsics, max_depth_m: float) -> None:
-        """Fuse one view; depth beyond `max_depth_m` is ignored."""
+    def integrate(
+        self, frame: RgbdFrame, intrinsics: Intrinsics, max_depth_m: float, facing: DepthImage | None = None
+    ) -> None:
+        """Fuse one view; depth beyond `max_depth_m` is ignored.
+
+        `facing` (H, W) turns a difference in depth into a distance along the surface's normal and weighs the
+        view: 1 where a surface is seen straight on. Without it all pixels count as if they were.
+        """
+        depth_m = np.ascontiguousarray(frame.depth_m, dtype=np.float32)
         _integrate(
             self.distance,
+            self.evidence,
             self.weight,
             self.hidden,
             self.origin_m.astype(np.float32),
             np.float32(self.voxel_m),
             np.float32(self.truncation_m),
             np.float32(self.behind_m),
-            np.ascontiguousarray(frame.depth_m, dtype=np.float32),
+            np.float32(self.falloff_m),
+            depth_m,
+            np.ones_like(depth_m) if facing is None else facing,
             intrinsics.matrix.astype(np.float32),
             np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
             np.float32(max_depth_m),
@@ -95,13 +122,16 @@ class TsdfVolume:
 @numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
 def _integrate(
     distance: DistanceGrid,
+    evidence: DistanceGrid,
     weight: npt.NDArray[np.uint16],
     hidden: BoolArray,
     origin_m: npt.NDArray[np.float32],
     voxel_m: np.float32,
     truncation_m: np.float32,
     behind_m: np.float32,
+    falloff_m: np.float32,
     depth_m: DepthImage,
+    facing: DepthImage,
     camera: npt.NDArray[np.float32],
     pose: npt.NDArray[np.float32],
     max_depth_m: np.float32,
@@ -135,11 +165,15 @@ def _integrate(
                 measured = depth_m[row, column]
                 if measured <= SMALLEST_DEPTH_M or measured > max_depth_m:
                     continue
-                difference = measured - camera_z
+                difference = (measured - camera_z) * facing[row, column]
                 if difference <= -behind_m:
                     hidden[i, j, k] = True
                     continue
-                before = np.float32(weight[i, j, k])
                 weight[i, j, k] += np.uint16(1)
+                relative = difference / falloff_m
+                counts = facing[row, column]
+                counts *= np.exp(-relative * relative) if relative < FAR_IN_FRONT else LEAST_FREE_WEIGHT
+                before = evidence[i, j, k]
+                evidence[i, j, k] = before + counts
                 value = min(one, difference / truncation_m)
-                distance[i, j, k] = (distance[i, j, k] * before + value) / (before + one)
+                distance[i, j, k] = (distance[i, j, k] * before + value * counts) / (before + counts)

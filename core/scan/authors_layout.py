@@ -1,18 +1,17 @@
 """Scans as the authors' released data lay them out.
 
 `rgbd/frame-NNNNNN.{color.png,depth.png,pose.txt}` and `camera-intrinsics.txt`; beside it an optional
-`scan.json` with `{"platform_height_m": ...}`, which is ours.
+`scan.json` (facts.py), which is ours.
 """
 
 from __future__ import annotations
 
-import json
-import math
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from core.errors import InputError
 from core.progress import Reporter
+from core.scan.facts import read_facts
 from core.scan.images import read_color, read_depth
 from core.scan.matrices import check_intrinsics_fit, read_intrinsics, read_pose
 from core.scan.model import RgbdFrame, Scan
@@ -43,7 +42,7 @@ def read_scan(folder: Path, reporter: Reporter) -> Scan:
     height, width = frames[0].depth_m.shape
     check_intrinsics_fit(intrinsics, width, height, intrinsics_path)
     useful = leave_out_useless(frames, frames_folder, reporter)
-    return Scan(tuple(useful), intrinsics, _read_platform_height(intrinsics_path.parent / FACTS_FILE))
+    return Scan(tuple(useful), intrinsics, *read_facts(intrinsics_path.parent / FACTS_FILE))
 
 
 def _find_frames(folder: Path) -> Path:
@@ -117,17 +116,3 @@ def _check_one_size(frames: list[RgbdFrame], folder: Path) -> None:
                     f"{frames[0].name}.depth.png is {expected[1]} x {expected[0]}; "
                     "all colour and depth images of a scan must have one size."
                 )
-
-
-def _read_platform_height(path: Path) -> float | None:
-    if not path.exists():
-        return None
-    try:
-        height = json.loads(path.read_text(encoding="utf-8")).get("platform_height_m")
-    except (OSError, ValueError, AttributeError, RecursionError) as error:
-        raise InputError(f"{path} cannot be read ({error}); correct it or delete it.") from error
-    if height is None:
-        return None
-    if isinstance(height, bool) or not isinstance(height, int | float) or not math.isfinite(height):
-        raise InputError(f"platform_height_m in {path} must be a height in metres in the base frame.")
-    return float(height)

@@ -55,9 +55,25 @@ class RgbdFrame:
 
 
 @dataclass(frozen=True)
+class CropBox:
+    """The box that holds the object: its lower and upper corner (3,) in the robot's base frame."""
+
+    min_m: tuple[float, float, float]
+    max_m: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
 class Scan:
-    """All views of one object; `platform_height_m` is the transparent platform's top in the base frame."""
+    """All views of one object, and what is known of the place where it stood.
+
+    Attributes:
+        frames: the views.
+        intrinsics: of the camera that took them.
+        platform_height_m: the transparent platform's top in the base frame; none: not known.
+        crop_box: where the object stood; none: not known.
+    """
 
     frames: tuple[RgbdFrame, ...]
     intrinsics: Intrinsics
     platform_height_m: float | None = None
+    crop_box: CropBox | None = None

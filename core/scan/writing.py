@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import json
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,9 +11,10 @@ from PIL import Image
 from core.errors import SessionError
 from core.geometry import AnyArray
 from core.scan.authors_layout import FACTS_FILE, FRAMES_FOLDER, INTRINSICS_FILE
+from core.scan.facts import facts_text
 from core.scan.images import depth_to_millimetres
 from core.scan.matrices import matrix_text
-from core.scan.model import Intrinsics, RgbdFrame, Scan
+from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
 
 
 def write_scan(scan: Scan, folder: Path) -> None:
@@ -23,23 +23,25 @@ def write_scan(scan: Scan, folder: Path) -> None:
     Raises:
         SessionError: a file cannot be written.
     """
-    write_camera(scan.intrinsics, scan.platform_height_m, folder)
+    write_camera(scan.intrinsics, scan.platform_height_m, folder, scan.crop_box)
     for frame in scan.frames:
         write_frame(frame, folder)
 
 
-def write_camera(intrinsics: Intrinsics, platform_height_m: float | None, folder: Path) -> None:
-    """Write what all views share: the camera matrix and, when known, the platform's height.
+def write_camera(
+    intrinsics: Intrinsics, platform_height_m: float | None, folder: Path, crop_box: CropBox | None = None
+) -> None:
+    """Write what all views share: the camera matrix and, when known, the platform's height and the crop box.
 
     Raises:
         SessionError: a file cannot be written.
     """
     _write_whole(folder / INTRINSICS_FILE, matrix_text(intrinsics.matrix).encode())
-    if platform_height_m is None:
-        (folder / FACTS_FILE).unlink(missing_ok=True)
+    facts = facts_text(platform_height_m, crop_box)
+    if facts:
+        _write_whole(folder / FACTS_FILE, facts.encode())
     else:
-        facts = json.dumps({"platform_height_m": platform_height_m}, allow_nan=False)
-        _write_whole(folder / FACTS_FILE, facts.encode() + b"\n")
+        (folder / FACTS_FILE).unlink(missing_ok=True)
 
 
 def write_frame(frame: RgbdFrame, folder: Path) -> None:

@@ -7,40 +7,81 @@ patches of a table look as in the 24 real views of the authors' tray, which a te
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import radians
 
 import numpy as np
 
 from core.geometry import FloatArray, make_pose
+from core.parameters.fields import OURS, Group, quantity
+
+_TRAY = f"{OURS}: set so that table patches look as in the released tray scan"
 
 
-@dataclass(frozen=True)
-class DepthNoise:
-    """Everything that keeps the simulated camera from being perfect; `None` in its place is a perfect one.
+class DepthNoise(Group):
+    """Everything that keeps the simulated camera from being perfect; `None` in its place is a perfect one."""
 
-    Attributes:
-        axial_scale: factor on the axial noise of Nguyen et al.; the Carmine is better than their Kinect.
-        correlation_px: SD of the Gaussian over which neighbouring pixels share their noise: the camera
-            matches windows, not pixels.
-        disparity_step_per_m: step of inverse depth; 0.003 per metre makes steps of 3 mm at 1 m, 12 mm at 2 m.
-        depth_step_m: step in which the device hands its depth out.
-        baseline_m: distance of the projector, along +x of the camera; what it does not light has no depth.
-        max_incidence_rad: surfaces seen at a flatter angle give no depth.
-        min_range_m: nothing nearer is measured.
-        pose_position_m: length (root mean square) of the error in each view's recorded position.
-        pose_angle_rad: angle (root mean square) of the error in each view's recorded orientation.
-    """
-
-    axial_scale: float = 0.5
-    correlation_px: float = 1.5
-    disparity_step_per_m: float = 0.003
-    depth_step_m: float = 0.001
-    baseline_m: float = 0.075
-    max_incidence_rad: float = radians(78)
-    min_range_m: float = 0.35
-    pose_position_m: float = 0.001
-    pose_angle_rad: float = radians(0.25)
+    axial_scale: float = quantity(
+        0.5,
+        "Factor on the axial noise of Nguyen et al.; the Carmine is better than their Kinect.",
+        unit="",
+        source=_TRAY,
+        low=0,
+        high=10,
+    )
+    correlation_px: float = quantity(
+        1.5,
+        "SD of the Gaussian over which neighbouring pixels share their noise: the camera matches windows.",
+        unit="pixel",
+        source=_TRAY,
+        low=0,
+        high=20,
+    )
+    disparity_step_per_m: float = quantity(
+        0.003,
+        "Step of inverse depth; 0.003 per metre makes steps of 3 mm at 1 m and 12 mm at 2 m.",
+        unit="1/m",
+        source="measured on the released tray scan",
+        low=0,
+        high=0.1,
+    )
+    depth_step_m: float = quantity(
+        0.001, "Step in which the device hands its depth out.", unit="m", source="OpenNI2", low=0, high=0.1
+    )
+    baseline_m: float = quantity(
+        0.075,
+        "Distance of the projector, along +x of the camera; what it does not light has no depth.",
+        unit="m",
+        source="PrimeSense Carmine 1.09",
+        low=0,
+        high=0.3,
+    )
+    max_incidence_rad: float = quantity(
+        radians(78),
+        "Surfaces seen at a flatter angle give no depth.",
+        unit="rad",
+        source=OURS,
+        low=0,
+        high=1.58,
+    )
+    min_range_m: float = quantity(
+        0.35, "Nothing nearer is measured.", unit="m", source="PrimeSense Carmine 1.09", low=0, high=2
+    )
+    pose_position_m: float = quantity(
+        0.001,
+        "Length (root mean square) of the error in each view's recorded position.",
+        unit="m",
+        source=OURS,
+        low=0,
+        high=0.1,
+    )
+    pose_angle_rad: float = quantity(
+        radians(0.25),
+        "Angle (root mean square) of the error in each view's recorded orientation.",
+        unit="rad",
+        source=OURS,
+        low=0,
+        high=0.5,
+    )
 
 
 def axial_sd_m(depth_m: FloatArray, incidence_rad: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ from core.geometry import FloatArray, make_pose, rotation_z, transform_points
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
+from core.scan.crop_box import crop_box_of
 from core.scan.model import RgbdFrame, Scan
 from hardware.simulation.depth_camera import SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, disturb_pose
@@ -62,7 +63,7 @@ def simulate_scan(
         color, depth = camera.capture(T_true, random)
         frames.append(RgbdFrame(f"frame-{k:06d}", color, depth, T_base_camera))
         reporter.progress(STAGE, k + 1, len(views))
-    return Scan(tuple(frames), camera.intrinsics, float(target[2]))
+    return Scan(tuple(frames), camera.intrinsics, float(target[2]), crop_box_of(None, parameters))
 
 
 def place_on_platform(mesh: TriangleMesh, seed: int, parameters: ReconstructionParameters) -> FloatArray:
@@ -72,8 +73,8 @@ def place_on_platform(mesh: TriangleMesh, seed: int, parameters: ReconstructionP
         InputError: the object does not fit into the crop box, however it is turned.
     """
     random = np.random.default_rng([seed, 0])
-    low = np.array(parameters.crop_min_m) + WALL_MARGIN_M
-    high = np.array(parameters.crop_max_m) - WALL_MARGIN_M
+    box = crop_box_of(None, parameters)
+    low, high = np.array(box.min_m) + WALL_MARGIN_M, np.array(box.max_m) - WALL_MARGIN_M
     center = _platform_center(parameters)
     for _ in range(_PLACING_DRAWS):
         rotation = rotation_z(random.uniform(0, 2 * np.pi))
@@ -98,5 +99,6 @@ def transform_mesh(mesh: TriangleMesh, T_target_source: FloatArray) -> TriangleM
 
 def _platform_center(parameters: ReconstructionParameters) -> FloatArray:
     """Middle (3,) of the platform's top, in the base frame."""
-    low, high = np.array(parameters.crop_min_m), np.array(parameters.crop_max_m)
+    box = crop_box_of(None, parameters)
+    low, high = np.array(box.min_m), np.array(box.max_m)
     return np.array([*(low + high)[:2] / 2, low[2] + PLATFORM_ABOVE_BOX_M])

@@ -71,7 +71,7 @@ def test_an_unknown_name_is_refused_with_the_nearest(wrong, offered):
         ("seed", "NaN", "allowed is"),
         ("containability.n_min", "300", "n_min must not exceed n_max"),
         ("pouring.cup.slant_rad", "0.5", "narrows to a point"),
-        ("reconstruction.crop_max_m", "[0, 0, 0]", "must exceed crop_min_m"),
+        ("reconstruction.crop_max_m", "[0, 0, 0]", "given both or not at all"),
     ],
 )
 def test_a_value_out_of_range_is_refused_with_the_range(name, value, said):
@@ -79,6 +79,13 @@ def test_a_value_out_of_range_is_refused_with_the_range(name, value, said):
         apply_settings(Parameters(), {name: value})
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_crop_box_has_both_corners_and_volume():
+    box = {"reconstruction.crop_min_m": "[0, 0, 0]", "reconstruction.crop_max_m": "[0.1, 0.1, 0.1]"}
+    assert apply_settings(Parameters(), box).reconstruction.crop_max_m == (0.1, 0.1, 0.1)
+    with pytest.raises(InputError, match="must exceed crop_min_m"):
+        apply_settings(Parameters(), box | {"reconstruction.crop_max_m": "[0.1, 0.1, 0.001]"})
 
 
 def test_text_and_values_set_the_same():

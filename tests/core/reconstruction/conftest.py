@@ -106,11 +106,18 @@ def plate() -> trimesh.Trimesh:
     return trimesh.creation.revolve(profile, sections=64)
 
 
+def thin_cup() -> trimesh.Trimesh:
+    """A cup of 90 mm with a wall of 2 mm, so wide and low that all views see its inside."""
+    profile = [[0, 0], [0.045, 0], [0.045, 0.05], [0.043, 0.05], [0.043, 0.006], [0, 0.006]]
+    return trimesh.creation.revolve(profile, sections=96)
+
+
 BODIES: dict[str, Callable[[], trimesh.Trimesh]] = {
     "block": block,
     "block_and_crumb": block_and_crumb,
     "bowl": bowl,
     "plate": plate,
+    "thin_cup": thin_cup,
 }
 
 

@@ -39,7 +39,8 @@ def test_default_preset_gives_a_closed_tray_of_the_true_height(tray, listener):
     floor_m = body.vertices[middle & (body.vertex_normals[:, 2] > 0.5), 2]
     assert floor_m.max() < body.bounds[1, 2] - 0.01
     assert floor_m.min() > body.bounds[0, 2] + 0.004
-    assert 0.02 < result.truncation_m <= 0.03
+    assert result.refinement.residual_after_m < 0.4 * result.refinement.residual_before_m
+    assert result.refinement.table_sd_after_m < result.refinement.table_sd_before_m
 
 
 def test_the_table_tells_the_pose_error(tray, listener):

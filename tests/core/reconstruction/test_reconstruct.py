@@ -34,6 +34,22 @@ def height_above(mesh: TriangleMesh, x_m: float, y_m: float) -> float:
     return 1.0 - float(hit[0])
 
 
+def radii_m(mesh: TriangleMesh, angle_rad: float, heights_m):
+    """Where horizontal rays through the axis (N heights) meet the wall from outside and from inside."""
+    scene = o3d.t.geometry.RaycastingScene()
+    scene.add_triangles(mesh.vertices_m.astype(np.float32), mesh.faces.astype(np.uint32))
+    way = np.array([np.cos(angle_rad), np.sin(angle_rad), 0.0])
+    axis = np.column_stack([np.full_like(heights_m, 0.4), np.full_like(heights_m, 0.1), heights_m])
+    rays = np.concatenate(
+        [
+            np.column_stack([axis + 0.2 * way, np.tile(-way, (len(axis), 1))]),
+            np.column_stack([axis, np.tile(way, (len(axis), 1))]),
+        ]
+    ).astype(np.float32)
+    hits = scene.cast_rays(rays)["t_hit"].numpy()
+    return 0.2 - hits[: len(axis)], hits[len(axis) :]
+
+
 def test_a_solid_block_has_its_volume(block_scan, parameters, listener):
     result = reconstruct(block_scan, parameters, listener)
     assert result.mesh.volume_m3 == pytest.approx(0.08 * 0.06 * 0.05, rel=0.05)
@@ -56,6 +72,17 @@ def test_a_bowl_is_open_at_the_top_and_has_its_floor(bowl_scan, parameters, list
     assert height_above(mesh, 0.4, 0.1) == pytest.approx(PLATFORM_M + 0.008, abs=0.003)
     assert height_above(mesh, 0.4 + 0.046, 0.1) == pytest.approx(PLATFORM_M + 0.05, abs=0.003)
     assert mesh.extents_m == pytest.approx([0.1, 0.1, 0.05], abs=0.004)
+
+
+def test_a_wall_of_two_millimetres_keeps_its_two_sides(simulated, parameters, listener):
+    scan = simulated("thin_cup", translation_error_m=0.0005)
+    mesh = reconstruct(scan, parameters, listener).mesh
+    assert_closed(mesh)
+    heights_m = np.linspace(PLATFORM_M + 0.01, PLATFORM_M + 0.04, 7)
+    for angle in np.linspace(0, 2 * np.pi, 36, endpoint=False):
+        outer, inner = radii_m(mesh, angle, heights_m)
+        assert outer == pytest.approx(0.045, abs=0.0015)
+        assert inner == pytest.approx(0.043, abs=0.0025)
 
 
 @pytest.mark.parametrize("height_m", [0.08, 0.0801, 0.083, 0.0815])
@@ -125,7 +152,7 @@ def test_depth_limit_that_leaves_nothing(block_scan, parameters, listener):
 
 def test_progress_and_cancel_at_each_view(block_scan, parameters, listener):
     reconstruct(block_scan, parameters, listener)
-    assert listener.steps == [("reconstruction", done, 16) for done in range(1, 17)]
+    assert listener.steps == [("reconstruction", done, 48) for done in range(1, 49)]
     listener.cancel()
     with pytest.raises(Cancelled):
         reconstruct(block_scan, parameters, listener)

@@ -1,12 +1,15 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 
 from core.errors import SessionError
+from core.geometry import look_at
 from core.mesh import TriangleMesh
-from core.reconstruction import PoseHealth, Reconstruction, ViewHealth
+from core.reconstruction import PoseHealth, Reconstruction, Refinement, ViewCorrection, ViewHealth
 
 
 @pytest.fixture
@@ -14,7 +17,9 @@ def result() -> Reconstruction:
     box = trimesh.creation.box((0.1, 0.2, 0.3))
     mesh = TriangleMesh(np.asarray(box.vertices) / 3, np.asarray(box.faces))
     health = PoseHealth((ViewHealth("frame-000001", 0.1 / 3, 0.01), ViewHealth("frame-000002", None, None)))
-    return Reconstruction(mesh, 0.0815, 0.02, health)
+    pose = look_at([0.1, 0.2, 1 / 3], [0.0, 0.0, 0.0])
+    views = (ViewCorrection("frame-000001", 1e-3 / 3, 0.01, 0.002, None, pose),)
+    return Reconstruction(mesh, 0.0815, 0.02, health, Refinement(views, 0.002, 0.0005, None, 1e-3 / 7, 3e-4))
 
 
 def test_it_loads_what_it_saved(result, tmp_path):
@@ -24,6 +29,15 @@ def test_it_loads_what_it_saved(result, tmp_path):
     assert np.array_equal(loaded.mesh.faces, result.mesh.faces)
     assert loaded.pose_health == result.pose_health
     assert (loaded.platform_height_m, loaded.truncation_m) == (0.0815, 0.02)
+    for before, after in zip(result.refinement.views, loaded.refinement.views, strict=True):
+        assert np.array_equal(after.T_base_camera, before.T_base_camera)
+        assert replace(after, T_base_camera=None) == replace(before, T_base_camera=None)
+    assert replace(loaded.refinement, views=()) == replace(result.refinement, views=())
+
+
+def test_poses_as_recorded_are_kept_as_no_refinement(result, tmp_path):
+    replace(result, refinement=None).save(tmp_path)
+    assert Reconstruction.load(tmp_path).refinement is None
 
 
 def test_other_programs_read_the_mesh(result, tmp_path):

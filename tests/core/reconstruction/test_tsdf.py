@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,3 +83,27 @@ def test_behind_the_surface_a_view_counts_only_as_far_as_it_may(volume):
     assert (short.distance[front, 10, 10] == volume.distance[front, 10, 10]).all()
     assert (short.weight[:, 10, 10] > 0).tolist() == (x_m < 0.507).tolist()
     assert short.hidden[:, 10, 10].tolist() == (x_m > 0.507).tolist()
+
+
+def seen_from_both_sides(thickness_m: float, falloff_m: float) -> float:
+    """How thick a wall comes out that one view sees from -x and one from +x."""
+    volume = TsdfVolume((0.44, -0.05, -0.05), (0.56, 0.05, 0.05), 0.002, 0.016, 0.012, falloff_m)
+    front = wall(0.5 - thickness_m / 2)
+    opposite = look_at([1, 0, 0], [0, 0, 0])
+    for frame in (front, replace(front, T_base_camera=opposite)):
+        volume.integrate(frame, CAMERA, 6.0)
+    x_m, inside = 0.44 + 0.002 * np.arange(60), volume.distance[:, 25, 25] < 0
+    return float(np.ptp(x_m[inside])) + 0.002 if inside.any() else 0.0
+
+
+def test_a_falloff_keeps_a_thin_wall_thin():
+    assert seen_from_both_sides(0.003, 0.002) == pytest.approx(0.003, abs=0.0021)
+    assert seen_from_both_sides(0.003, np.inf) > 0.01
+
+
+def test_facing_makes_depth_a_distance_along_the_normal(volume):
+    depth_m = wall(0.5)
+    volume.integrate(depth_m, CAMERA, 6.0, np.full((80, 100), 0.5, dtype=np.float32))
+    assert volume.distance[18, 10, 10] == pytest.approx(0.5 * 0.01 / 0.02, abs=1e-4)
+    assert volume.evidence[18, 10, 10] == pytest.approx(0.5)
+    assert volume.weight[18, 10, 10] == 1

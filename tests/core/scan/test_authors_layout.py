@@ -10,14 +10,16 @@ import pytest
 
 from core.errors import Cancelled, SessionError
 from core.geometry import AnyArray, rotation_error
+from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.scan import Scan, read_scan, write_frame, write_scan
+from core.scan import CropBox, Scan, crop_box_of, read_scan, write_frame, write_scan
 
 
 def same(first: Scan, second: Scan) -> bool:
     return (
         first.intrinsics == second.intrinsics
         and first.platform_height_m == second.platform_height_m
+        and first.crop_box == second.crop_box
         and len(first.frames) == len(second.frames)
         and all(
             a.name == b.name
@@ -46,7 +48,26 @@ def test_the_rgbd_folder_itself_may_be_given(small_scan, folder):
 
 def test_without_scan_json_the_platform_is_unknown(folder):
     (folder / "scan.json").unlink()
-    assert read_scan(folder, Reporter()).platform_height_m is None
+    scan = read_scan(folder, Reporter())
+    assert scan.platform_height_m is None and scan.crop_box is None
+
+
+@pytest.mark.parametrize("height_m", [None, 0.0815])
+@pytest.mark.parametrize("box", [None, CropBox((-0.1, 0.2, 0.03), (0.1, 1 / 3, 0.4))])
+def test_height_and_crop_box_are_kept_each_for_itself(small_scan, tmp_path, height_m, box):
+    placed = replace(small_scan, platform_height_m=height_m, crop_box=box)
+    write_scan(placed, tmp_path)
+    assert same(read_scan(tmp_path, Reporter()), placed)
+
+
+def test_the_parameters_box_goes_before_the_scans_and_that_before_the_released_codes(small_scan):
+    scans_own = CropBox((0.0, 0.0, 0.0), (0.1, 0.1, 0.1))
+    placed = replace(small_scan, crop_box=scans_own)
+    given = ReconstructionParameters(crop_min_m=(1, 1, 1), crop_max_m=(2, 2, 2))
+    assert crop_box_of(placed, given) == CropBox((1, 1, 1), (2, 2, 2))
+    assert crop_box_of(placed, ReconstructionParameters()) == scans_own
+    for unknown in (small_scan, None):
+        assert crop_box_of(unknown, ReconstructionParameters()).min_m == (-0.30, -0.55, 0.03)
 
 
 def test_writing_an_unknown_platform_height_forgets_the_old_one(small_scan, folder):

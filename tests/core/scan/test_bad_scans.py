@@ -139,7 +139,19 @@ def test_intrinsics_of_another_resolution(folder):
     refused(folder, "camera-intrinsics.txt", "16 x 12")
 
 
-@pytest.mark.parametrize("text", ["", "[]", '{"platform_height_m": "high"}', '{"platform_height_m": NaN}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        '{"platform_height_m": "high"}',
+        '{"platform_height_m": NaN}',
+        '{"crop_min_m": [0, 0, 0]}',
+        '{"crop_min_m": [0, 0], "crop_max_m": [1, 1]}',
+        '{"crop_min_m": [0, 0, 0], "crop_max_m": [1, 1, Infinity]}',
+        '{"crop_min_m": [0, 0, 0], "crop_max_m": [1, 1, 0.001]}',
+    ],
+)
 def test_a_damaged_scan_json(folder, text):
     (folder / "scan.json").write_text(text)
     refused(folder, "scan.json")

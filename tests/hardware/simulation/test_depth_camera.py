@@ -1,4 +1,3 @@
-from dataclasses import replace
 from math import radians
 from pathlib import Path
 
@@ -99,7 +98,7 @@ def test_axial_noise_grows_with_distance_and_slant() -> None:
 @pytest.mark.parametrize(("depth_m", "step_m"), [(0.5, 0.00075), (1.0, 0.003), (2.0, 0.012)])
 def test_disparity_comes_in_steps(depth_m: float, step_m: float) -> None:
     ramp = np.linspace(0.95 * depth_m, 1.05 * depth_m, 100_000)[None]
-    quiet = replace(DepthNoise(), axial_scale=0.0, depth_step_m=0.0)
+    quiet = DepthNoise(axial_scale=0.0, depth_step_m=0.0)
     steps = np.diff(np.unique(disturb(ramp, np.zeros_like(ramp), quiet, random())))
     assert np.median(steps) == pytest.approx(step_m, rel=0.05)
 
@@ -113,15 +112,15 @@ def test_depth_comes_in_whole_millimetres(world: World) -> None:
 def test_minimum_range_and_grazing_surfaces() -> None:
     depth = np.array([[0.34, 0.36, 0.5, 0.5, 0.0]])
     incidence = np.radians([[0.0, 0.0, 77.0, 79.0, 0.0]])
-    seen = disturb(depth, incidence, replace(DepthNoise(), axial_scale=0.0), random()) > 0
+    seen = disturb(depth, incidence, DepthNoise(axial_scale=0.0), random()) > 0
     assert seen.tolist() == [[False, True, True, False, False]]
 
 
 def test_the_projector_leaves_a_shadow_on_the_left(world: World) -> None:
     T = look_at([0, 0, 0.7], [0, 0, 0])
-    quiet = replace(DepthNoise(), axial_scale=0.0)
+    quiet = DepthNoise(axial_scale=0.0)
     _, depth = SimulatedDepthCamera(world, quiet).capture(T, random())
-    _, without = SimulatedDepthCamera(world, replace(quiet, baseline_m=0.0)).capture(T, random())
+    _, without = SimulatedDepthCamera(world, DepthNoise(axial_scale=0.0, baseline_m=0.0)).capture(T, random())
     shadow = (depth == 0) & (without > 0)
     columns = np.nonzero(shadow[236])[0]
     # Similar triangles: the block's left edge, 125 mm above the table, shifted by a baseline of 75 mm.

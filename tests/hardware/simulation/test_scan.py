@@ -8,6 +8,7 @@ from core.geometry import invert_pose, rotation_error, transform_points
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
+from core.scan import crop_box_of
 from core.scan.model import Scan
 from hardware.simulation.depth_camera import HEIGHT, WIDTH
 from hardware.simulation.objects import BUILTIN_OBJECTS, builtin_object
@@ -15,6 +16,7 @@ from hardware.simulation.scan import place_on_platform, simulate_scan, transform
 from hardware.simulation.scan_views import scan_views
 
 PARAMETERS = ReconstructionParameters()
+BOX = crop_box_of(None, PARAMETERS)
 TARGET = np.array([-0.06, -0.35, 0.14])
 
 
@@ -55,7 +57,7 @@ def test_what_is_measured_inside_the_box_is_the_object(mug_scan: Scan) -> None:
     inside = []
     for frame in mug_scan.frames:
         points = frame.points_m(mug_scan.intrinsics, max_depth_m=6.0, stride=3)
-        keep = (points > PARAMETERS.crop_min_m).all(axis=1) & (points < PARAMETERS.crop_max_m).all(axis=1)
+        keep = (points > BOX.min_m).all(axis=1) & (points < BOX.max_m).all(axis=1)
         inside.append(transform_points(T_object_base, points[keep]))
     points = np.concatenate(inside)
     assert len(points) > 2000
@@ -85,8 +87,8 @@ def test_every_object_stands_inside_the_box_on_the_platform(name: str, seed: int
     mesh = builtin_object(name)
     placed = transform_mesh(mesh, place_on_platform(mesh, seed, PARAMETERS))
     assert placed.aabb_min_m[2] == pytest.approx(0.08)
-    assert (placed.aabb_min_m > np.array(PARAMETERS.crop_min_m) + 0.0099).all()
-    assert (placed.aabb_max_m < np.array(PARAMETERS.crop_max_m) - 0.0099).all()
+    assert (placed.aabb_min_m > np.array(BOX.min_m) + 0.0099).all()
+    assert (placed.aabb_max_m < np.array(BOX.max_m) - 0.0099).all()
     eyes = [T[:3, 3] for T in scan_views(TARGET)]
     nearest = min(np.linalg.norm(placed.vertices_m - eye, axis=1).min() for eye in eyes)
     assert nearest > 0.36
