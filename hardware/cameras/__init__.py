@@ -1,0 +1,1 @@
+"""Real cameras and recordings of them; each brings in its driver only when it is connected."""
