@@ -21,6 +21,10 @@ app = typer.Typer(
 
 SessionArgument = Annotated[Path, typer.Argument(metavar="SESSION", help="A session's folder.")]
 SessionOption = Annotated[Path, typer.Option("--session", metavar="DIR", help="The session's folder.")]
+CellOption = Annotated[
+    Optional[Path],  # noqa: UP045
+    typer.Option("--cell", metavar="FILE", help="The cell's file; by default the simulated cell."),
+]
 PresetOption = Annotated[
     Optional[str],  # noqa: UP045 - typer reads it at run time
     typer.Option("--preset", metavar="P", help="default, paper, authors, or a preset file."),
@@ -45,6 +49,39 @@ def import_scan(
     from app import commands
 
     commands.import_scan(folder, session)
+
+
+@app.command()
+def scan(
+    session: SessionOption,
+    cell: CellOption = None,
+    source: Annotated[
+        Optional[str],  # noqa: UP045
+        typer.Option(
+            "--object", metavar="NAME|MESH", help="In a simulated cell: a built-in object or a mesh file."
+        ),
+    ] = None,
+    adaptive: Annotated[
+        bool, typer.Option("--adaptive", help="Take more views where the inside of an opening was not seen.")
+    ] = False,
+    retake: Annotated[
+        Optional[list[str]],  # noqa: UP045
+        typer.Option("--retake", metavar="VIEW", help="Take a view of the finished scan again."),
+    ] = None,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Throw away the views of an interrupted scan.")
+    ] = False,
+    preset: PresetOption = None,
+    settings: SetOption = None,
+    workers: WorkersOption = None,
+    seed: SeedOption = None,
+) -> None:
+    """Let the robot look at the object from all sides; by default in the simulated cell."""
+    from app import commands
+    from app.scanning import ScanWishes
+
+    wishes = ScanWishes(adaptive, tuple(retake or ()), restart)
+    commands.scan(session, cell, source, commands.Choices(preset, settings or [], seed), workers, wishes)
 
 
 @app.command()
@@ -123,11 +160,11 @@ def parameters(
 
 
 @app.command()
-def doctor() -> None:
-    """Check this installation: versions, renderer, known-bad packages, free disk."""
+def doctor(cell: CellOption = None) -> None:
+    """Check this installation (versions, renderer, known-bad packages, free disk) and a cell's devices."""
     from app.doctor import examine
 
-    raise typer.Exit(examine())
+    raise typer.Exit(examine(cell))
 
 
 def main() -> None:

@@ -13,6 +13,7 @@ from typing import Any
 
 from app.answer import answer_table
 from app.listing import short
+from app.scanning import ScanWishes, scan_object
 from app.terminal import TerminalReporter
 from core.errors import InputError, SessionError
 from core.files import read_json, write_json
@@ -107,27 +108,43 @@ def report(session_folder: Path, workers: int | None) -> None:
     print(f"Report: {path}")
 
 
+def scan(
+    session_folder: Path,
+    cell_file: Path | None,
+    source: str | None,
+    choices: Choices,
+    workers: int | None,
+    wishes: ScanWishes,
+) -> None:
+    """Scan an object in a cell and say whether the scan is good enough."""
+    from hardware.cell import SIMULATED_CELL, read_cell
+
+    settings = read_cell(cell_file or SIMULATED_CELL)
+    if settings.is_simulated and source is None:
+        raise InputError(
+            f"The {settings.name} is empty: name the object that stands in it, such as --object mug, or "
+            "give --cell FILE for a real one."
+        )
+    with _working(session_folder, choices, workers) as pipeline:
+        scan_object(pipeline, settings, source, wishes)
+        quality = pipeline.quality()
+    print(f"{len(quality.views)} views in {session_folder}.")
+    for reason in quality.reasons:
+        print(f"The scan is {reason}")
+
+
 def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
     """Do the whole job with a built-in object."""
+    from hardware.cell import read_cell
     from hardware.simulation.objects import builtin_object
 
-    mesh = builtin_object(name)
+    builtin_object(name)  # an unknown name is refused before anything is started
     with _working(out, choices, workers) as pipeline:
-        _simulated_scan(pipeline, name, mesh)
+        scan_object(pipeline, read_cell(), name)
         result = pipeline.imagination()
         path = pipeline.report()
     _print_verdict(result)
     print(f"Report: {path}")
-
-
-def _simulated_scan(pipeline: Pipeline, name: str, mesh: Any) -> None:
-    """Scan in the simulated cell unless the session already holds this very scan."""
-    from hardware.simulation.scan import simulate_scan
-
-    origin = {"object": name, "seed": pipeline.parameters.seed, "camera": "simulated"}
-    if pipeline.session.is_fresh("scan", {}, origin):
-        return
-    pipeline.keep_scan(simulate_scan(mesh, pipeline.parameters.seed, pipeline.reporter), origin)
 
 
 @contextmanager

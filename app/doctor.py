@@ -5,12 +5,14 @@ from __future__ import annotations
 import platform
 import shutil
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
 from importlib.metadata import PackageNotFoundError, version
+from itertools import chain
 from pathlib import Path
 
 from core.imagination.rendering.doctor import renderer_name
+from hardware.cell import read_cell
+from hardware.cell.examination import Finding, examine_cell
 
 _FREE_DISK_BYTES = 2 * 10**9
 _SHOWN = ("numpy", "numba", "scipy", "pybullet", "open3d-cpu", "trimesh", "vhacdx", "coacd", "pydantic")
@@ -21,25 +23,33 @@ _KNOWN_BAD = {
 }
 
 
-@dataclass(frozen=True)
-class Finding:
-    """One line of the examination; `problem` says what to do when something is wrong."""
+def examine(cell_file: Path | None) -> int:
+    """Print what was found of this installation, and of a cell's devices when its file is given.
 
-    subject: str
-    value: str
-    problem: str | None = None
+    Returns 1 if something stands in the way of the job, else 0.
 
-
-def examine() -> int:
-    """Print what was found; return 1 if something stands in the way of the job, else 0."""
-    checks: tuple[Callable[[], list[Finding]], ...] = (_python, _packages, _known_bad, _renderer, _disk)
-    findings = [finding for check in checks for finding in check()]
-    for finding in findings:
+    Raises:
+        InputError: the cell file cannot be used.
+    """
+    is_fine = True
+    for finding in chain(_installation(), _cell(cell_file) if cell_file else ()):
         mark = "ok  " if finding.problem is None else "BAD "
         print(f"{mark}{finding.subject:<22}{finding.value}")
         if finding.problem is not None:
             print(f"    -> {finding.problem}")
-    return int(any(finding.problem for finding in findings))
+            is_fine = False
+    return int(not is_fine)
+
+
+def _installation() -> Iterator[Finding]:
+    checks: tuple[Callable[[], list[Finding]], ...] = (_python, _packages, _known_bad, _renderer, _disk)
+    for check in checks:
+        yield from check()
+
+
+def _cell(path: Path) -> Iterator[Finding]:
+    settings = read_cell(path)
+    yield from examine_cell(settings)
 
 
 def _python() -> list[Finding]:

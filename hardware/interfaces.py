@@ -21,7 +21,7 @@ class CameraImage:
 
     Attributes:
         color: (H, W, 3) uint8, RGB.
-        depth_m: (H, W) float32, along the optical axis, registered to the colour; 0 where nothing was measured.
+        depth_m: (H, W) float32, along the optical axis, registered to the colour; 0 = not measured.
         intrinsics: of both, for this resolution.
         time_s: when it was taken, in seconds of a clock that only goes forwards; not the time of day.
     """

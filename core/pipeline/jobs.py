@@ -7,8 +7,9 @@ from pathlib import Path
 from core.collision import CollisionModel, build_collision_model
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import CollisionParameters, ReconstructionParameters
+from core.quality import ScanQuality, assess, coarse_volume
 from core.reconstruction import Reconstruction, reconstruct
-from core.scan import read_scan
+from core.scan import crop_box_of, read_scan
 from core.workers import WorkerReporter
 
 
@@ -19,6 +20,19 @@ def reconstruction_job(
     reporter = WorkerReporter()
     scan = read_scan(scan_folder, WorkerReporter())  # its warnings were given when it was imported
     return reconstruct(scan, parameters, reporter), reporter.warnings
+
+
+def quality_job(
+    scan_folder: Path,
+    reconstruction_folder: Path,
+    parameters: ReconstructionParameters,
+    table_height_m: float | None,
+) -> tuple[ScanQuality, list[str]]:
+    """Judge a scan by itself and by what was reconstructed from it."""
+    scan = read_scan(scan_folder, WorkerReporter())
+    volume = coarse_volume(scan, crop_box_of(scan, parameters))
+    reconstruction = Reconstruction.load(reconstruction_folder)
+    return assess(scan, volume, reconstruction, table_height_m=table_height_m), []
 
 
 def collision_job(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[CollisionModel, list[str]]:

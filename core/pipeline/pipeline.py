@@ -20,10 +20,11 @@ from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh, read_mesh_parts
 from core.mesh_topology import is_convex, join
 from core.parameters import Parameters, load_preset
-from core.pipeline.jobs import collision_job, reconstruction_job
+from core.pipeline.jobs import collision_job, quality_job, reconstruction_job
 from core.pipeline.report_content import gather
 from core.ply import read_ply, write_ply
 from core.progress import Reporter
+from core.quality import ScanQuality
 from core.reconstruction import Reconstruction
 from core.report import write_report
 from core.scan import Scan, read_scan, write_scan
@@ -95,10 +96,26 @@ class Pipeline:
 
     def keep_scan(self, scan: Scan, origin: dict[str, Any]) -> Scan:
         """Make `scan` the session's scan; `origin` says where it is from."""
-        with self.session.writing("scan", inputs={}, parameters=origin) as stage:
-            write_scan(scan, stage)
-            self._keep_warnings(stage)
+        self.keep_written_scan(lambda stage: write_scan(scan, stage), origin)
         return scan
+
+    def keep_written_scan(self, write: Callable[[Path], None], origin: dict[str, Any]) -> None:
+        """Make what `write` puts into an empty folder, in the authors' layout, the session's scan.
+
+        Args:
+            write: called with the folder.
+            origin: where the scan is from, as plain JSON; `table_height_m` in it is the cell's.
+
+        Raises:
+            SessionError: the session holds a mesh, or cannot be written.
+        """
+        if self.session.record("mesh") is not None:
+            raise SessionError(
+                f"The session {self.session.path} holds a mesh; give another --session for the scan."
+            )
+        with self.session.writing("scan", inputs={}, parameters=origin) as stage:
+            write(stage)
+            self._keep_warnings(stage)
 
     def import_mesh(self, path: Path) -> TriangleMesh:
         """Take over a mesh instead of a scan; a file of several convex parts keeps them.
@@ -131,6 +148,21 @@ class Pipeline:
             return result
 
         return self._fresh("reconstruction", ("scan",), settings.model_dump(), Reconstruction.load, run)
+
+    def quality(self) -> ScanQuality:
+        """Judge the scan: what it did not see, and how well its views agree."""
+        self.reconstruction()
+        record = self.session.record("scan")
+        table_height_m = record.parameters.get("table_height_m") if record else None
+        settings = self.parameters.reconstruction
+        folders = self.session.path / "scan", self.session.path / "reconstruction"
+        job = Task(quality_job, (*folders, settings, table_height_m))
+
+        def run() -> ScanQuality:
+            result: ScanQuality = self._in_worker(job, "quality")
+            return result
+
+        return self._fresh("quality", ("scan", "reconstruction"), {}, ScanQuality.load, run)
 
     def surface(self) -> TriangleMesh:
         """Return the object's mesh, reconstructed or imported."""
@@ -204,6 +236,7 @@ class Pipeline:
             self.parameters,
             self.surface(),
             self.reconstruction() if is_scan else None,
+            self.quality() if is_scan else None,
             self.imagination(),
             evidence,
             self.warnings(),

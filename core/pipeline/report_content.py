@@ -9,6 +9,7 @@ from core.imagination.imagine import Imagination
 from core.imagination.rendering.evidence import Evidence
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
+from core.quality import ScanQuality
 from core.reconstruction import Reconstruction
 from core.report import Media, ReportContent
 from core.session import Session
@@ -25,7 +26,7 @@ _CAPTIONS = {
     "drop.mp4": "The drop and the perturbations",
     "pour.mp4": "The chosen pour",
 }
-_STAGES = ("scan", "mesh", "reconstruction", "collision", "containability", "pouring", "evidence")
+_STAGES = ("scan", "mesh", "reconstruction", "quality", "collision", "containability", "pouring", "evidence")
 
 
 def gather(
@@ -34,6 +35,7 @@ def gather(
     parameters: Parameters,
     surface: TriangleMesh,
     reconstruction: Reconstruction | None,
+    quality: ScanQuality | None,
     imagination: Imagination,
     evidence: Evidence,
     warnings: list[str],
@@ -52,6 +54,7 @@ def gather(
         containability=imagination.containability,
         surface=surface,
         reconstruction=reconstruction,
+        quality=quality,
         pours=imagination.grid,
         choice=imagination.choice,
         scan_pictures=_thumbnails(session.path / "scan" / "rgbd"),

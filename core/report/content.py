@@ -12,6 +12,7 @@ from core.mesh import TriangleMesh
 from core.parameters import Parameters
 
 if TYPE_CHECKING:  # only its numbers are needed here, not the fusion
+    from core.quality import ScanQuality
     from core.reconstruction.result import Reconstruction
 
 Media: TypeAlias = bytes | Path
@@ -31,6 +32,7 @@ class ReportContent:
         containability: the verdict and its evidence.
         surface: the object's mesh, reconstructed or given.
         reconstruction: None when the mesh was given.
+        quality: of the scan; None when the mesh was given.
         pours: None when none were imagined.
         choice: None when there is no pour to choose.
         scan_pictures: caption to picture, small; one a view.
@@ -49,6 +51,7 @@ class ReportContent:
     containability: Containability
     surface: TriangleMesh
     reconstruction: Reconstruction | None = None
+    quality: ScanQuality | None = None
     pours: PourGrid | None = None
     choice: PourChoice | None = None
     scan_pictures: Mapping[str, Media] = field(default_factory=dict)

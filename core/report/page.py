@@ -18,6 +18,7 @@ from core.report.tables import (
     object_facts,
     parameter_rows,
     pour_rows,
+    refinement_sentence,
     time_rows,
     view_rows,
 )
@@ -108,6 +109,7 @@ def _reconstruction_data(content: ReportContent) -> dict[str, Any]:
     return {
         "health_said": health_sentence(content.reconstruction),
         "view_rows": view_rows(content.reconstruction),
+        "refinement_said": refinement_sentence(content.reconstruction),
     }
 
 

@@ -93,6 +93,20 @@ def health_sentence(reconstruction: Reconstruction) -> str:
     )
 
 
+def refinement_sentence(reconstruction: Reconstruction) -> str:
+    """Say what correcting the poses did; empty when they were not corrected."""
+    refinement = reconstruction.refinement
+    if refinement is None or refinement.residual_before_m is None or refinement.residual_after_m is None:
+        return ""
+    shifts_m = [view.shift_m for view in refinement.views]
+    return (
+        "The poses were corrected by registering the views to each other: their surfaces were "
+        f"{refinement.residual_before_m * MM:.1f} mm apart, now {refinement.residual_after_m * MM:.1f} mm; "
+        f"the cameras moved by {sum(shifts_m) / len(shifts_m) * MM:.1f} mm on average, "
+        f"at most {max(shifts_m) * MM:.1f} mm."
+    )
+
+
 def view_rows(reconstruction: Reconstruction) -> list[ViewRow]:
     """Return one row a view."""
     views = reconstruction.pose_health.views

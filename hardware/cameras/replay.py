@@ -23,12 +23,14 @@ class ReplayCamera:
     Attributes:
         name: says which folder is played.
         T_base_camera: (4, 4) where the last image was taken from; None before the first.
+        n_views: how many there are, once entered.
     """
 
     def __init__(self, folder: Path) -> None:
         """Choose the scan: a session, the scan in one, or a folder in the authors' layout."""
         self.name = f"replay of {folder}"
         self.T_base_camera: FloatArray | None = None
+        self.n_views = 0
         self._folder = folder
         self._views: Iterator[RgbdFrame] | None = None
         self._intrinsics: Intrinsics
@@ -43,6 +45,7 @@ class ReplayCamera:
         scan = read_scan(recorded if recorded.is_dir() else self._folder, Reporter())
         self._intrinsics = scan.intrinsics
         self._views = iter(scan.frames)
+        self.n_views = len(scan.frames)
         self.T_base_camera = None
         return self
 

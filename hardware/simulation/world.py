@@ -11,6 +11,7 @@ from core.geometry import AnyArray, BoolArray, FloatArray
 from core.mesh import TriangleMesh
 
 _TABLE_HALF_SIZE_M = 0.9
+_NO_OBJECT = -1
 _MARGIN = 2e-3
 """Share of a line left out at its end, so that no surface hides itself."""
 
@@ -33,17 +34,17 @@ class Hits:
 
 
 class World:
-    """An object, given in the robot's base frame, above a table of 1.8 m by 1.8 m.
+    """An object, given in the robot's base frame, or none, above a table of 1.8 m by 1.8 m.
 
     Ray casting is Embree's, through Open3D: no GL, no window.
     """
 
-    def __init__(self, mesh: TriangleMesh, table_center_m: FloatArray) -> None:
+    def __init__(self, mesh: TriangleMesh | None, table_center_m: FloatArray) -> None:
         import open3d as o3d
 
         self._tensor: Any = o3d.core.Tensor
         self._scene: Any = o3d.t.geometry.RaycastingScene()
-        self._object_id = self._add(mesh.vertices_m, mesh.faces)
+        self._object_id = _NO_OBJECT if mesh is None else self._add(mesh.vertices_m, mesh.faces)
         corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * _TABLE_HALF_SIZE_M
         self._add(corners + table_center_m, np.array([[0, 1, 2], [0, 2, 3]]))
         self.lamp_m: FloatArray = table_center_m + np.array([0.7, -0.5, 1.6])
@@ -57,7 +58,9 @@ class World:
             distance=distance,
             points_m=origin_m + reach[..., None] * directions,
             normals=answer["primitive_normals"].numpy().astype(float),
-            on_object=answer["geometry_ids"].numpy() == self._object_id,
+            on_object=np.equal(
+                answer["geometry_ids"].numpy(), -1 if self._object_id is None else self._object_id
+            ),
         )
 
     def hidden(self, points_m: FloatArray, from_m: FloatArray) -> BoolArray:

@@ -28,7 +28,9 @@ from core.scan import Scan
 from hardware.simulation.depth_noise import DepthNoise
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.objects.catalogue import _vessel
-from hardware.simulation.scan import place_on_platform, simulate_scan, transform_mesh
+from hardware.cell import read_cell
+from hardware.scanning.simulated import simulate_scan
+from hardware.simulation.placing import place_on_platform, transform_mesh
 
 OBJECTS = ("mug", "bowl", "plate", "vase", "glass", "thin glass", "box", "bottle")
 N_SAMPLES = 6000
@@ -167,7 +169,7 @@ def measure(name: str, seed: int, noise: DepthNoise, parameters: Parameters) -> 
     """All columns for one scan."""
     mesh = make_object(name)
     scan = simulate_scan(mesh, seed, Reporter(), noise=noise)
-    placed = transform_mesh(mesh, place_on_platform(mesh, seed, parameters.reconstruction))
+    placed = transform_mesh(mesh, place_on_platform(mesh, seed, read_cell().place))
     truth = Truth(placed, scan)
     start_s = time.perf_counter()
     result = reconstruct(scan, parameters.reconstruction, Reporter())

@@ -30,7 +30,9 @@ from core.scan.crop_box import crop_box_of
 from core.workers import WorkerPool
 from hardware.simulation.depth_noise import DepthNoise
 from hardware.simulation.objects import builtin_object
-from hardware.simulation.scan import place_on_platform, simulate_scan, transform_mesh
+from hardware.cell import read_cell
+from hardware.scanning.simulated import simulate_scan
+from hardware.simulation.placing import place_on_platform, transform_mesh
 
 OBJECTS = ("mug", "bowl", "plate", "box", "glass")
 SEEDS = (0, 1)
@@ -85,8 +87,8 @@ def measure(
     settings = parameters.reconstruction
     mesh = builtin_object(name)
     noise = DepthNoise(pose_position_m=level[0] / 1000, pose_angle_rad=radians(level[1]))
-    scan = simulate_scan(mesh, seed, Reporter(), settings, noise)
-    truth = transform_mesh(mesh, place_on_platform(mesh, seed, settings))
+    scan = simulate_scan(mesh, seed, Reporter(), noise)
+    truth = transform_mesh(mesh, place_on_platform(mesh, seed, read_cell().place))
     result = reconstruct(scan, settings, Reporter())
     fused = scan if result.refinement is None else result.refinement.applied_to(scan)
     volume = coarse_volume(fused, crop_box_of(scan, settings))

@@ -11,7 +11,7 @@ from core.progress import Reporter
 from core.session import Session
 from core.workers import WorkerPool
 from hardware.simulation.objects import builtin_object
-from hardware.simulation.scan import simulate_scan
+from hardware.scanning.simulated import simulate_scan
 
 QUICK = {
     "reconstruction.voxel_m": 0.005,

@@ -12,7 +12,7 @@ from core.scan.model import CropBox, RgbdFrame, Scan
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH, SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, disturb_pose
 from hardware.simulation.objects.loft import turned
-from hardware.simulation.scan_views import SCAN_RINGS, scan_views
+from tests.ideal_rings import SCAN_RINGS, scan_views
 from hardware.simulation.world import World
 
 PLATFORM_M = 0.08

@@ -1,0 +1,126 @@
+"""`poursight scan`: the robot's scan of a cell, kept in a session."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from core.errors import InputError, StageError
+from core.pipeline import Pipeline
+
+if TYPE_CHECKING:
+    from core.mesh import TriangleMesh
+    from hardware.cell import Cell, CellSettings
+    from hardware.scanning import ScanKeeper
+
+IN_PROGRESS = "scan-in-progress"
+"""The session's folder for views of a scan that is not finished."""
+
+
+@dataclass(frozen=True)
+class ScanWishes:
+    """What the user asked for beyond the scan itself.
+
+    Attributes:
+        adaptive: look again where the inside of an opening was not seen.
+        retake: names of views of the finished scan to take again.
+        restart: throw away what an interrupted scan left.
+    """
+
+    adaptive: bool = False
+    retake: tuple[str, ...] = ()
+    restart: bool = False
+
+
+def scan_object(
+    pipeline: Pipeline, settings: CellSettings, source: str | None, wishes: ScanWishes = ScanWishes()
+) -> None:
+    """Scan in a cell, continuing what was interrupted; nothing is done when the session holds this very scan.
+
+    Args:
+        pipeline: of the session; its seed is that of a simulated cell.
+        settings: the cell.
+        source: for a simulated cell, a built-in object's name or a mesh file.
+        wishes: what to do beyond that.
+
+    Raises:
+        PoursightError: the sentence says what is in the way; every view that was taken is kept.
+    """
+    from hardware.scanning import ScanKeeper
+
+    mesh = _mesh(source, pipeline) if source is not None else None
+    seed = pipeline.parameters.seed
+    origin = _origin(settings, source, mesh, seed)
+    is_done = pipeline.session.is_fresh("scan", {}, origin)
+    keeper = ScanKeeper(pipeline.session.path / IN_PROGRESS, origin)
+    if wishes.restart:
+        keeper.remove()
+    elif is_done and not keeper.folder.exists():
+        if not (wishes.adaptive or wishes.retake):
+            return
+        keeper.adopt(pipeline.session.folder("scan"))
+    elif wishes.retake and not is_done:
+        raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
+    _take(pipeline, settings, mesh, seed, keeper, wishes)
+    pipeline.keep_written_scan(keeper.publish, origin)
+    keeper.remove()
+
+
+def _take(
+    pipeline: Pipeline,
+    settings: CellSettings,
+    mesh: TriangleMesh | None,
+    seed: int,
+    keeper: ScanKeeper,
+    wishes: ScanWishes,
+) -> None:
+    from hardware.scanning import ScanProcedure
+    from hardware.scanning.looking_again import look_again
+    from hardware.scanning.views import name_views
+
+    with _open(settings, mesh, seed) as cell:
+        procedure = ScanProcedure(cell, keeper, pipeline.reporter)
+        procedure.take(name_views(cell.views_rad))
+        procedure.retake(wishes.retake)
+        if wishes.adaptive:
+            look_again(cell, procedure)
+        procedure.scan()  # refuses what is too little to be kept as a scan
+
+
+def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
+    from hardware.cell import open_cell
+    from hardware.simulation.placing import world_with
+
+    world = world_with(mesh, settings.place, seed) if mesh is not None and settings.is_simulated else None
+    if mesh is not None and world is None:
+        raise InputError(
+            f"The {settings.name} is not simulated: put the object on its platform, leave out --object."
+        )
+    return open_cell(settings, world, seed)
+
+
+def _mesh(source: str, pipeline: Pipeline) -> TriangleMesh:
+    from core.mesh_file import read_mesh
+    from hardware.simulation.objects import BUILTIN_OBJECTS, builtin_object
+
+    path = Path(source)
+    if source in BUILTIN_OBJECTS or not (path.suffix or path.exists()):
+        return builtin_object(source)
+    return read_mesh(path, pipeline.reporter)
+
+
+def _origin(
+    settings: CellSettings, source: str | None, mesh: TriangleMesh | None, seed: int
+) -> dict[str, Any]:
+    """Which scan this is, as plain JSON: two scans of one origin in a simulated cell are the same."""
+    origin: dict[str, Any] = {
+        "cell": json.loads(settings.model_dump_json()),
+        "table_height_m": settings.place.table_height_m,
+    }
+    if mesh is not None:
+        content = mesh.vertices_m.tobytes() + mesh.faces.tobytes()
+        origin |= {"object": source, "object_sha256": hashlib.sha256(content).hexdigest(), "seed": seed}
+    return origin

@@ -1,0 +1,134 @@
+"""Trying each device of a cell, and its scan views, without moving anything."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from core.errors import PoursightError
+from core.geometry import FloatArray
+from core.motion.joint_path import check_path
+from core.motion.kinematics import flange_pose
+from hardware.cell.cell import open_cell, real_camera
+from hardware.cell.scene import ARMS, motion_scene
+from hardware.cell.settings import CellSettings
+from hardware.interfaces import Camera
+from hardware.simulation.world import World
+
+DASHBOARD_PORT = 29999
+UR_GREETING = "Universal Robots"
+UR_PORTS = {DASHBOARD_PORT: "dashboard", 30003: "script", 30004: "data (RTDE)"}
+PROBE_S = 2.0
+SAME_VIEW_M, SAME_VIEW_RAD = 0.03, np.radians(5.0)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One line of an examination; `problem` says what to do when something is wrong."""
+
+    subject: str
+    value: str
+    problem: str | None = None
+
+
+def examine_cell(settings: CellSettings) -> Iterator[Finding]:
+    """Try robot, gripper, camera and scan views; yields one finding after the other."""
+    yield Finding("cell", settings.name + (" (SIMULATED)" if settings.is_simulated else ""))
+    yield _robot(settings)
+    yield Finding("gripper", f"{settings.gripper.kind}, output {settings.gripper.output}")
+    yield _camera(settings)
+    if settings.camera.kind != "replay":
+        yield from _views(settings)
+
+
+def _robot(settings: CellSettings) -> Finding:
+    robot = settings.robot
+    if robot.kind != "ur5":
+        return Finding("robot", f"{robot.kind} {robot.model}")
+    address = str(robot.address)
+    subject = f"{robot.model} at {address}"
+    for port, purpose in UR_PORTS.items():
+        try:
+            with socket.create_connection((address, port), PROBE_S) as connection:
+                greeting = _greeting(connection) if port == DASHBOARD_PORT else UR_GREETING
+        except OSError as error:
+            return Finding(
+                "robot",
+                subject,
+                f"Nobody answers on its {purpose} port {port} ({error}); switch the controller on, check the "
+                "address in the cell file and the network cable.",
+            )
+        if UR_GREETING not in greeting:
+            return Finding(
+                "robot",
+                subject,
+                "What answers there is no UR controller; correct the address in the cell file.",
+            )
+    return Finding("robot", f"{subject}, its ports answer")
+
+
+def _greeting(connection: socket.socket) -> str:
+    """The first line of a dashboard server; empty when nothing comes."""
+    connection.settimeout(PROBE_S)
+    try:
+        return connection.recv(200).decode("ascii", errors="replace")
+    except OSError:
+        return ""
+
+
+def _camera(settings: CellSettings) -> Finding:
+    try:
+        camera = _camera_of(settings)
+        with camera:
+            image = camera.capture()
+    except PoursightError as error:
+        return Finding("camera", settings.camera.kind, str(error))
+    share = float((image.depth_m > 0).mean())
+    height, width = image.depth_m.shape
+    value = f"{camera.name}, {width} x {height}, depth in {share:.0%} of the pixels"
+    blind = None if share > 0 else "It gives no depth at all; check its projector and what it looks at."
+    return Finding("camera", value, blind)
+
+
+def _camera_of(settings: CellSettings) -> Camera:
+    """The cell's camera; a simulated one looks at an empty cell from where the arm rests."""
+    if not settings.is_simulated:
+        return real_camera(settings)
+    table_m = np.array([*settings.place.platform_center_m[:2], settings.place.table_height_m])
+    return open_cell(settings, World(None, table_m)).camera
+
+
+def _views(settings: CellSettings) -> Iterator[Finding]:
+    joints = np.array(settings.scan.views_rad)
+    scene = motion_scene(settings)
+    subject = "scan views"
+    for number, row in enumerate((np.array(settings.robot.home_rad), *joints)):
+        what = f"view {number}" if number else "home_rad"
+        problem = check_path(scene, row, settings.scan.min_clearance_m).problem
+        if problem is not None:
+            yield Finding(
+                subject, what, f"The arm cannot stand there ({problem}); correct it in the cell file."
+            )
+            return
+    same = _same_views(flange_pose(ARMS[settings.robot.model], joints) @ settings.camera.pose)
+    if same:
+        pairs = ", ".join(f"{a + 1} and {b + 1}" for a, b in same)
+        yield Finding(subject, f"{len(joints)}", f"Views {pairs} are the same; replace one of each pair.")
+        return
+    least_mm = scene.clearance(joints).distance_m.min() * 1000
+    yield Finding(subject, f"{len(joints)}, all reachable, {least_mm:.0f} mm clear")
+
+
+def _same_views(T_base_camera: FloatArray) -> list[tuple[int, int]]:
+    """Pairs of views that hardly differ."""
+    pairs = []
+    for a, b in combinations(range(len(T_base_camera)), 2):
+        shift_m = np.linalg.norm(T_base_camera[a, :3, 3] - T_base_camera[b, :3, 3])
+        cosine = (np.trace(T_base_camera[a, :3, :3].T @ T_base_camera[b, :3, :3]) - 1) / 2
+        if shift_m < SAME_VIEW_M and np.arccos(np.clip(cosine, -1, 1)) < SAME_VIEW_RAD:
+            pairs.append((a, b))
+    return pairs

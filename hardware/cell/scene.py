@@ -1,0 +1,43 @@
+"""What the arm must not touch, as the cell file describes it."""
+
+from __future__ import annotations
+
+from core.motion.arm_models import UR5, UR5E, ArmModel
+from core.motion.arm_shape import Capsule, arm_shape, capsule_around_box
+from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
+from hardware.cell.settings import CellSettings
+
+ARMS: dict[str, ArmModel] = {"UR5": UR5, "UR5e": UR5E}
+_TABLE_REACH_M = 1.5
+_TABLE_DEPTH_M = 0.5
+_STANDS_THERE = frozenset({"base", "shoulder", "upper arm"})
+"""The shoulder always turns nearer to the table than the wanted clearance; the elbow answers for the far end
+of the upper arm."""
+
+
+def motion_scene(cell: CellSettings) -> MotionScene:
+    """Return arm, tools and obstacles; the object may fill its whole box."""
+    arm = ARMS[cell.robot.model]
+    gripper, camera = cell.gripper, cell.camera
+    # A capsule reaches one radius beyond its segment's end.
+    tip_m = max(gripper.length_m - gripper.radius_m, 0.0)
+    tools = [
+        Capsule("gripper", 6, (0.0, 0.0, 0.0), (0.0, 0.0, tip_m), gripper.radius_m),
+        capsule_around_box("camera", camera.pose, camera.size_m),
+    ]
+    return MotionScene(arm, arm_shape(arm, tools), _obstacles(cell))
+
+
+def _obstacles(cell: CellSettings) -> list[Obstacle]:
+    place = cell.place
+    top = place.table_height_m
+    low, high = place.platform_min_m, place.platform_max_m
+    reach = _TABLE_REACH_M
+    return [
+        axis_aligned_obstacle(
+            "table", (-reach, -reach, top - _TABLE_DEPTH_M), (reach, reach, top), _STANDS_THERE
+        ),
+        axis_aligned_obstacle("platform", (*low, top), (*high, place.platform_height_m)),
+        axis_aligned_obstacle("object's box", place.crop_min_m, place.crop_max_m),
+        *(axis_aligned_obstacle(box.name, box.min_m, box.max_m) for box in cell.obstacles),
+    ]

@@ -1,0 +1,261 @@
+"""What a cell file says: devices, calibration and limits, validated; places are in the robot's base frame."""
+
+from __future__ import annotations
+
+from math import pi
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from core.geometry import FloatArray, rotation_error
+from core.parameters.fields import OURS, Group, choice, quantity
+from core.scan.model import CropBox, Intrinsics
+from hardware.simulation.depth_noise import DepthNoise
+
+_CELL = "the cell's calibration"
+ROTATION_TOLERANCE = 1e-3
+SMALLEST_EDGE_M = 0.01
+
+Coordinate = Annotated[float, Field(ge=-10, le=10)]
+Point = tuple[Coordinate, Coordinate, Coordinate]
+Edge = Annotated[float, Field(gt=0, le=1)]
+Angle = Annotated[float, Field(ge=-2 * pi, le=2 * pi)]
+Joints = tuple[Angle, Angle, Angle, Angle, Angle, Angle]
+Row = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
+
+
+class CameraSettings(Group):
+    """Which camera hangs at the flange, and where."""
+
+    kind: Literal["simulated", "realsense", "openni", "replay"] = choice(
+        ..., "simulated, realsense, openni (PrimeSense), or replay of a recorded scan.", source=_CELL
+    )
+    serial: str | None = choice(
+        None, "RealSense: its serial number; none: the first one found.", source=_CELL
+    )
+    recording: Path | None = choice(
+        None, "replay: the session or folder to play; RealSense: a .db3 or .bag file instead of a device.",
+        source=_CELL,
+    )  # fmt: skip
+    intrinsics: tuple[float, float, float, float] | None = choice(
+        None, "openni: fx, fy, cx, cy in pixels at 640 x 480, which the device does not know.", source=_CELL
+    )
+    T_flange_camera: tuple[Row, Row, Row, Row] = choice(
+        ..., "Hand-eye calibration: takes camera points (z forward, y down) to the flange.", source=_CELL
+    )
+    size_m: tuple[Edge, Edge, Edge] = quantity(
+        (0.18, 0.036, 0.025), "Its housing along its own x, y, z, to be kept clear.", unit="m", source=_CELL
+    )
+    baseline_m: float = quantity(
+        0.075, "Where its projector stands, along its x.", unit="m", source=_CELL, low=0, high=0.3
+    )
+    min_range_m: float = quantity(
+        0.35, "Nearer than this it measures nothing.", unit="m", source=_CELL, low=0, high=2
+    )
+
+    @model_validator(mode="after")
+    def _fits(self) -> CameraSettings:
+        pose = self.pose
+        if np.abs(pose[3] - [0, 0, 0, 1]).max() > 0 or rotation_error(pose[:3, :3]) > ROTATION_TOLERANCE:
+            raise ValueError(
+                "T_flange_camera is no pose: its 3x3 part must be a rotation, its last row 0 0 0 1"
+            )
+        if self.kind == "replay" and self.recording is None:
+            raise ValueError("a replay camera needs 'recording', the session or folder to play")
+        if self.kind == "openni" and self.intrinsics is None:
+            raise ValueError("an openni camera needs 'intrinsics': fx, fy, cx, cy")
+        return self
+
+    @property
+    def pose(self) -> FloatArray:
+        """`T_flange_camera` (4, 4)."""
+        return np.array(self.T_flange_camera)
+
+    @property
+    def replayed(self) -> Path:
+        """The session or folder that is played."""
+        assert self.recording is not None, "checked by the validator for replay"
+        return self.recording
+
+    @property
+    def calibrated_intrinsics(self) -> Intrinsics:
+        """The intrinsics given in the file."""
+        assert self.intrinsics is not None, "checked by the validator for the cameras that need it"
+        return Intrinsics(*self.intrinsics)
+
+
+class RobotSettings(Group):
+    """Which arm, and how fast it may move."""
+
+    kind: Literal["simulated", "ur5", "replay"] = choice(
+        ...,
+        "simulated (in this process), ur5, or replay: it is where the recorded view was taken.",
+        source=_CELL,
+    )
+    address: str | None = choice(None, "ur5: the controller's address in the network.", source=_CELL)
+    model: Literal["UR5", "UR5e"] = choice("UR5", "The arm's model.", source=_CELL)
+    home_rad: Joints = choice(..., "Where the arm rests, clear of everything.", source=_CELL)
+    joint_speed_rad_s: float = quantity(
+        0.8, "Speed of the fastest joint while scanning.", unit="rad/s", source=OURS, low=0.01, high=pi
+    )
+    joint_acceleration_rad_s2: float = quantity(
+        1.2, "Acceleration of the fastest joint.", unit="rad/s²", source=OURS, low=0.01, high=40
+    )
+
+    @model_validator(mode="after")
+    def _has_address(self) -> RobotSettings:
+        if self.kind == "ur5" and not self.address:
+            raise ValueError("a ur5 robot needs 'address', such as \"192.168.0.10\"")
+        return self
+
+
+class GripperSettings(Group):
+    """What holds the cup."""
+
+    kind: Literal["simulated", "ur5"] = choice(
+        "simulated", "simulated, or ur5: by a digital output of the arm's tool.", source=_CELL
+    )
+    output: int = quantity(
+        0,
+        "Tool digital output that closes it (afag EU-20 in the paper).",
+        unit="",
+        source="paper",
+        low=0,
+        high=1,
+    )
+    radius_m: float = quantity(
+        0.04, "Radius of the capsule it fills.", unit="m", source=_CELL, low=0.005, high=0.3
+    )
+    length_m: float = quantity(
+        0.12, "How far it reaches beyond the flange.", unit="m", source=_CELL, low=0, high=0.5
+    )
+
+
+class BoxSettings(Group):
+    """A box along the base's axes."""
+
+    name: str = choice(..., "What people call it.", source=_CELL)
+    min_m: Point = quantity(..., "Lower corner.", unit="m", source=_CELL)
+    max_m: Point = quantity(..., "Upper corner.", unit="m", source=_CELL)
+
+    @model_validator(mode="after")
+    def _has_volume(self) -> BoxSettings:
+        if any(high - low < SMALLEST_EDGE_M for low, high in zip(self.min_m, self.max_m, strict=True)):
+            raise ValueError(
+                f"max_m of {self.name} must exceed min_m by at least {SMALLEST_EDGE_M} m everywhere"
+            )
+        return self
+
+
+class PlaceSettings(Group):
+    """Table, platform and where the object may stand."""
+
+    table_height_m: float = quantity(
+        ..., "Top of the table that carries robot and platform.", unit="m", source=_CELL, low=-2, high=2
+    )
+    platform_min_m: tuple[Coordinate, Coordinate] = quantity(
+        ..., "The transparent platform's lower corner, x and y.", unit="m", source=_CELL
+    )
+    platform_max_m: tuple[Coordinate, Coordinate] = quantity(
+        ..., "Its upper corner, x and y.", unit="m", source=_CELL
+    )
+    platform_height_m: float = quantity(
+        ..., "The platform's top, which the camera does not see.", unit="m", source=_CELL, low=-2, high=2
+    )
+    crop_min_m: Point = quantity(
+        ..., "Lower corner of the box that holds the object.", unit="m", source=_CELL
+    )
+    crop_max_m: Point = quantity(
+        ..., "Upper corner of the box that holds the object.", unit="m", source=_CELL
+    )
+    cup_station_m: Point = quantity(
+        ..., "Middle of the standing cup's foot at its station.", unit="m", source=_CELL
+    )
+
+    @model_validator(mode="after")
+    def _fits(self) -> PlaceSettings:
+        if any(b - a < SMALLEST_EDGE_M for a, b in zip(self.crop_min_m, self.crop_max_m, strict=True)):
+            raise ValueError(f"crop_max_m must exceed crop_min_m by at least {SMALLEST_EDGE_M} m everywhere")
+        if any(
+            b - a < SMALLEST_EDGE_M for a, b in zip(self.platform_min_m, self.platform_max_m, strict=True)
+        ):
+            raise ValueError("platform_max_m must exceed platform_min_m by at least 0.01 m")
+        if self.platform_height_m <= self.table_height_m:
+            raise ValueError(
+                "the platform's top (platform_height_m) must lie above the table (table_height_m)"
+            )
+        if not self.crop_min_m[2] < self.platform_height_m < self.crop_max_m[2]:
+            raise ValueError(
+                "platform_height_m must lie between the heights of crop_min_m and crop_max_m: the crop box "
+                "begins a little below the platform, where the object stands"
+            )
+        return self
+
+    @property
+    def crop_box(self) -> CropBox:
+        """The box that holds the object."""
+        return CropBox(self.crop_min_m, self.crop_max_m)
+
+    @property
+    def platform_center_m(self) -> FloatArray:
+        """Middle (3,) of the platform's top."""
+        middle = (np.array(self.platform_min_m) + np.array(self.platform_max_m)) / 2
+        return np.array([*middle, self.platform_height_m])
+
+
+class ScanSettings(Group):
+    """How the object is scanned (Sec. IV-A)."""
+
+    views_rad: tuple[Joints, ...] = Field(
+        min_length=1,
+        max_length=200,
+        description="Joint configurations of the views, in their order.",
+        json_schema_extra={"unit": "rad", "source": _CELL},
+    )
+    settle_s: float = quantity(
+        0.3, "How long the arm must have stood still before an image.", unit="s", source=OURS, low=0, high=10
+    )
+    tries: int = quantity(
+        3, "How often a view is tried before it is left out.", unit="", source=OURS, low=1, high=20
+    )
+    min_clearance_m: float = quantity(
+        0.02, "What stays free around the arm on its way.", unit="m", source=OURS, low=0, high=0.2
+    )
+
+
+class SimulationSettings(Group):
+    """What the simulated cell adds to the real one's file."""
+
+    is_perfect: bool = choice(False, "No noise, no shadow, no pose error: one switch for all.", source=OURS)
+    is_instant: bool = choice(True, "The arm jumps instead of moving as a real one does.", source=OURS)
+    noise: DepthNoise = DepthNoise()
+
+
+class CellSettings(Group):
+    """A cell as its file describes it."""
+
+    name: str = choice(..., "What people call it.", source=_CELL)
+    camera: CameraSettings
+    robot: RobotSettings
+    gripper: GripperSettings = GripperSettings()
+    place: PlaceSettings
+    obstacles: tuple[BoxSettings, ...] = ()
+    scan: ScanSettings
+    simulation: SimulationSettings = SimulationSettings()
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether no real device takes part."""
+        return self.camera.kind == "simulated"
+
+    @model_validator(mode="after")
+    def _devices_fit(self) -> CellSettings:
+        if (self.camera.kind == "replay") != (self.robot.kind == "replay"):
+            raise ValueError("camera and robot must both be of kind 'replay', or neither")
+        if self.camera.kind == "simulated" and self.robot.kind != "simulated":
+            raise ValueError(
+                "a simulated camera sees nothing from a real robot; set robot.kind to 'simulated'"
+            )
+        return self

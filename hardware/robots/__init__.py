@@ -1,0 +1,1 @@
+"""Arms: the kinematic twin, and the arm of a recorded scan."""

@@ -1,0 +1,136 @@
+"""The arm's kinematic twin: it is where its motion says, in this process, without forces."""
+
+from __future__ import annotations
+
+import time
+from threading import RLock
+from types import TracebackType
+
+import numpy as np
+import numpy.typing as npt
+
+from core.motion.arm_models import ArmModel
+from core.motion.kinematics import N_JOINTS, flange_pose, within_limits
+from hardware.errors import RobotError, RobotStopped
+from hardware.interfaces import RobotState
+from hardware.robots.joint_motion import JointMotion
+
+_POLL_S = 0.004
+
+
+class KinematicRobot:
+    """Moves as the real controller's joint moves do, by the clock; or, if `is_instant`, by jumping.
+
+    Attributes:
+        name: the model, marked as simulated.
+    """
+
+    def __init__(self, arm: ArmModel, joints_rad: npt.ArrayLike, is_instant: bool) -> None:
+        """Stand at `joints_rad` (6,)."""
+        self.name = f"simulated {arm.name}"
+        self._arm = arm
+        self._is_instant = is_instant
+        self._lock = RLock()
+        self._begin(JointMotion(np.array([joints_rad], dtype=float), 1.0, 1.0))
+
+    def __enter__(self) -> KinematicRobot:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.stop()
+
+    def state(self) -> RobotState:
+        """Return where the joints are now."""
+        with self._lock:
+            now_s = time.monotonic()
+            joints, speeds, _ = self._motion.at(self._elapsed(now_s))
+            return RobotState(joints, speeds, flange_pose(self._arm, joints), now_s)
+
+    def move_joints(
+        self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float
+    ) -> KinematicMove:
+        """Start to move through configurations (N, 6), the first being where the arm stands.
+
+        Raises:
+            RobotError: a configuration lies outside the joint limits, or the arm is elsewhere or moving.
+        """
+        path = np.array(path_rad, dtype=float)
+        is_path = path.ndim == 2 and len(path) > 0 and path.shape[1] == N_JOINTS
+        if not is_path or not within_limits(self._arm, path).all():
+            raise RobotError(f"The {self.name} cannot take these joint angles; plan the motion anew.")
+        with self._lock:
+            state = self.state()
+            if np.abs(state.joint_speeds_rad_s).max() > 0:
+                raise RobotError(f"The {self.name} is still moving; stop it or wait until it stands.")
+            if np.abs(path[0] - state.joints_rad).max() > 1e-3:
+                raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
+            self._begin(JointMotion(path, speed_rad_s, acceleration_rad_s2))
+            return KinematicMove(self, self._motion)
+
+    def stop(self) -> None:
+        """Slow down and stand."""
+        with self._lock:
+            elapsed_s = self._elapsed(time.monotonic())
+            if elapsed_s < self._motion.duration_s:
+                self._begin(*self._motion.stopping(elapsed_s))
+
+    def progress_of(self, motion: JointMotion) -> float | None:
+        """Return the share of a motion that is done, 0 to 1; none when another one took its place."""
+        with self._lock:
+            if motion is not self._motion:
+                return None
+            done_rad = motion.at(self._elapsed(time.monotonic()))[2]
+            return done_rad / motion.length_rad if motion.length_rad else 1.0
+
+    def _begin(self, motion: JointMotion, elapsed_s: float = 0.0) -> None:
+        self._motion = motion
+        self._start_s = time.monotonic() - elapsed_s
+
+    def _elapsed(self, now_s: float) -> float:
+        return float("inf") if self._is_instant else now_s - self._start_s
+
+
+class KinematicMove:
+    """A motion of the kinematic twin."""
+
+    def __init__(self, robot: KinematicRobot, motion: JointMotion) -> None:
+        """Follow `motion`, which the robot has begun."""
+        self._robot = robot
+        self._motion = motion
+        self._last = 0.0
+
+    @property
+    def progress(self) -> float:
+        """Share of the way that is done, 0 to 1."""
+        self._last = self._robot.progress_of(self._motion) or self._last
+        return self._last
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it has ended, at its target or not."""
+        progress = self._robot.progress_of(self._motion)
+        return progress is None or progress >= 1
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait until the target is reached.
+
+        Raises:
+            RobotStopped: the motion ended elsewhere.
+            RobotError: it did not end in time.
+        """
+        deadline_s = time.monotonic() + timeout_s
+        while (progress := self._robot.progress_of(self._motion)) is not None and progress < 1:
+            if time.monotonic() > deadline_s:
+                raise RobotError(f"The {self._robot.name} did not arrive within {timeout_s:g} s; stop it.")
+            time.sleep(_POLL_S)
+        if progress is None:
+            raise RobotStopped(f"The {self._robot.name} was stopped on its way; plan its motion anew.")
+
+    def stop(self) -> None:
+        """Stop where the arm is now."""
+        self._robot.stop()

@@ -1,0 +1,63 @@
+"""The arm of a recorded scan: it is always where the next view was taken from."""
+
+from __future__ import annotations
+
+import time
+from types import TracebackType
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry import FloatArray, invert_pose
+from hardware.cameras.replay import ReplayCamera
+from hardware.interfaces import RobotState
+
+
+class ReplayRobot:
+    """Follows a replay camera; its joints are not known and stay zero.
+
+    Attributes:
+        name: says that nothing moves.
+    """
+
+    def __init__(self, camera: ReplayCamera, T_flange_camera: FloatArray) -> None:
+        """Stand so that the camera is where the recorded one was."""
+        self.name = "arm of a recorded scan"
+        self._camera = camera
+        self._T_camera_flange = invert_pose(T_flange_camera)
+
+    def __enter__(self) -> ReplayRobot:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        pass
+
+    def state(self) -> RobotState:
+        """Return where the last given view was taken from."""
+        T_base_camera = self._camera.T_base_camera
+        pose = np.eye(4) if T_base_camera is None else T_base_camera @ self._T_camera_flange
+        return RobotState(np.zeros(6), np.zeros(6), pose, time.monotonic())
+
+    def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> _NoMove:
+        """Nothing moves."""
+        del path_rad, speed_rad_s, acceleration_rad_s2
+        return _NoMove()
+
+    def stop(self) -> None:
+        """Nothing moves."""
+
+
+class _NoMove:
+    is_done = True
+    progress = 1.0
+
+    def wait(self, timeout_s: float) -> None:
+        del timeout_s
+
+    def stop(self) -> None:
+        pass

@@ -1,0 +1,42 @@
+"""A gripper that does what it is told and holds nothing."""
+
+from __future__ import annotations
+
+from types import TracebackType
+
+
+class SimulatedGripper:
+    """Opens and closes at once.
+
+    Attributes:
+        name: marks it as simulated.
+    """
+
+    def __init__(self) -> None:
+        """Begin open."""
+        self.name = "simulated gripper"
+        self._is_closed = False
+
+    def __enter__(self) -> SimulatedGripper:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        pass
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it was last told to close."""
+        return self._is_closed
+
+    def close(self) -> None:
+        """Close."""
+        self._is_closed = True
+
+    def open(self) -> None:
+        """Open."""
+        self._is_closed = False

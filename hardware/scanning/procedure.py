@@ -1,0 +1,310 @@
+"""Taking views one after the other: move, stand, shoot, keep, fuse (Sec. IV-A)."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from core.errors import MotionError, StageError
+from core.geometry import FloatArray
+from core.motion.route import RouteSettings, find_route
+from core.progress import Reporter
+from core.quality import ViewQuality, check_view, empty_coarse_volume, fuse_coarsely
+from core.reconstruction import TsdfVolume
+from core.scan.model import Intrinsics, RgbdFrame, Scan
+from hardware.cell import Cell
+from hardware.errors import CameraError, CameraLost, RobotError
+from hardware.interfaces import CameraImage, Move
+from hardware.scanning.control import ScanControl
+from hardware.scanning.keeping import ScanKeeper
+from hardware.scanning.views import PlannedView, ViewRecord, ViewState
+
+STAGE = "scan"
+STANDING_RAD_S = 1e-3
+SAME_PLACE_RAD = 1e-3
+MOST_FAILURES_IN_A_ROW = 3
+MOVE_TIMEOUT_S = 60.0
+STOP_TIMEOUT_S = 1.5
+RECONNECT_WAIT_S = 0.5
+FEWEST_VIEWS = 3
+_POLL_S = 0.02
+
+ViewTaken = Callable[[ViewRecord, RgbdFrame, TsdfVolume], None]
+"""Told after each view: what became of it, its images, and everything fused so far (`.mesh()` to look at)."""
+
+
+class ScanProcedure:
+    """Takes the views of one scan, in the cell, which must be entered.
+
+    Attributes:
+        records: what became of each view, in their order.
+        volume: everything fused so far, coarsely.
+    """
+
+    def __init__(
+        self,
+        cell: Cell,
+        keeper: ScanKeeper | None,
+        reporter: Reporter,
+        control: ScanControl | None = None,
+        taken: ViewTaken | None = None,
+    ) -> None:
+        """Begin, or continue what the keeper's folder holds; without a keeper nothing goes to the disk.
+
+        Raises:
+            SessionError: the folder holds another scan, or cannot be written.
+        """
+        place = cell.settings.place
+        self.records: list[ViewRecord] = []
+        self.volume = empty_coarse_volume(place.crop_box)
+        self._cell = cell
+        self._keeper = keeper
+        self._reporter = reporter
+        self._control = control or ScanControl()
+        self._taken = taken
+        self._frames: dict[str, RgbdFrame] = {}
+        self._intrinsics: Intrinsics | None = None
+        self._last: RgbdFrame | None = None
+        if keeper is not None:
+            self.records = keeper.begin(place.platform_height_m, place.crop_box)
+            self._recover(keeper)
+
+    def take(self, views: Sequence[PlannedView]) -> None:
+        """Take the views that are not taken yet; one that fails is left out, and told of.
+
+        Raises:
+            Cancelled: somebody asked to stop; the arm stands, and what was taken is kept.
+            StageError: several views failed one after the other.
+            DeviceError: camera or robot are gone.
+            SessionError: a view could not be written.
+        """
+        self._plan(views)
+        wanted = {view.name for view in views}
+        failures = 0
+        for index, record in enumerate(self.records):
+            if record.view.name not in wanted or record.has_image:
+                continue
+            self._control.wait_while_paused(self._reporter)
+            self.records[index] = outcome = self._take_one(record.view)
+            failures = 0 if outcome.has_image else failures + 1
+            self._tell(outcome)
+            if failures == MOST_FAILURES_IN_A_ROW:
+                raise StageError(
+                    f"{failures} views failed one after the other, the last because: {outcome.problems[0]} "
+                    f"The {self._n_taken} views taken before are kept; put it right and run the same command."
+                )
+
+    def retake(self, names: Sequence[str]) -> None:
+        """Take single views again; their old images stay until the new ones are there.
+
+        Raises:
+            StageError: there is no such view. See `take` for the rest.
+        """
+        known = {record.view.name: k for k, record in enumerate(self.records)}
+        for name in names:
+            if name not in known:
+                raise StageError(f"The scan has no view '{name}'; its views are {', '.join(known)}.")
+        for name in names:
+            self._control.wait_while_paused(self._reporter)
+            index = known[name]
+            before = self.records[index]
+            outcome = self._take_one(before.view)
+            if outcome.has_image or not before.has_image:
+                self.records[index] = outcome
+            if outcome.has_image:
+                self._fuse_anew()
+            else:
+                fate = "keeps its old image" if before.has_image else "is left out again"
+                self._reporter.warn(f"View {name} {fate}: {outcome.problems[0]}")
+            self._note()
+
+    def scan(self) -> Scan:
+        """Return what was taken.
+
+        Raises:
+            StageError: hardly any view was.
+        """
+        frames = [self._frames[r.view.name] for r in self.records if r.view.name in self._frames]
+        if len(frames) < FEWEST_VIEWS or self._intrinsics is None:
+            raise StageError(
+                f"Only {len(frames)} views could be taken; put right what was told and scan again."
+            )
+        place = self._cell.settings.place
+        return Scan(tuple(frames), self._intrinsics, place.platform_height_m, place.crop_box)
+
+    def camera_facts(self) -> tuple[Intrinsics, tuple[int, int]]:
+        """Return the camera's intrinsics and the width and height of its images; one must have been taken."""
+        assert self._intrinsics is not None, "an image was taken"
+        height, width = next(iter(self._frames.values())).depth_m.shape
+        return self._intrinsics, (width, height)
+
+    @property
+    def _n_taken(self) -> int:
+        return sum(record.has_image for record in self.records)
+
+    def _recover(self, keeper: ScanKeeper) -> None:
+        """Take over what an interrupted scan left; a view noted but not whole on the disk is taken again."""
+        left = keeper.recover(self.records)
+        if left is not None:
+            self._frames = {frame.name: frame for frame in left.frames}
+            self._intrinsics = left.intrinsics
+            self._fuse_anew()
+        self.records = [
+            record if record.view.name in self._frames else ViewRecord(record.view) for record in self.records
+        ]
+
+    def _plan(self, views: Sequence[PlannedView]) -> None:
+        known = {record.view.name for record in self.records}
+        self.records += [ViewRecord(view) for view in views if view.name not in known]
+
+    def _take_one(self, view: PlannedView) -> ViewRecord:
+        """Move there and shoot, with a bound on the tries."""
+        try:
+            self._go(np.array(view.joints_rad))
+        except MotionError as error:
+            return ViewRecord(view, ViewState.FAILED, (str(error),))
+        problems: tuple[str, ...] = ()
+        for attempt in range(self._cell.settings.scan.tries):
+            self._reporter.raise_if_cancelled()
+            try:
+                image, pose = self._shoot(reconnect=attempt > 0)
+            except CameraLost:
+                if attempt + 1 == self._cell.settings.scan.tries:
+                    raise
+                continue
+            except CameraError as error:
+                problems = (str(error),)
+                continue
+            frame = RgbdFrame(view.name, image.color, image.depth_m, pose)
+            quality = self._judge(frame, image.intrinsics)
+            problems = quality.problems
+            if not quality.is_useless:
+                return self._keep(view, frame, image.intrinsics, problems)
+        return ViewRecord(view, ViewState.FAILED, problems)
+
+    def _go(self, joints_rad: FloatArray) -> None:
+        robot, settings = self._cell.robot, self._cell.settings
+        here = robot.state().joints_rad
+        if self._is_replay or np.abs(here - joints_rad).max() < SAME_PLACE_RAD:
+            return
+        options = RouteSettings(
+            min_clearance_m=settings.scan.min_clearance_m, via_rad=(settings.robot.home_rad,)
+        )
+        path = find_route(self._cell.scene, here, joints_rad, options)
+        speed, acceleration = settings.robot.joint_speed_rad_s, settings.robot.joint_acceleration_rad_s2
+        move = robot.move_joints(path, speed, acceleration)
+        self._follow(move)
+        self._stand(joints_rad)
+
+    def _follow(self, move: Move) -> None:
+        """Wait until the move is over; stop the arm when somebody wants the scan to end."""
+        deadline_s = time.monotonic() + MOVE_TIMEOUT_S
+        try:
+            while not move.is_done:
+                self._reporter.raise_if_cancelled()
+                if time.monotonic() > deadline_s:
+                    raise RobotError(
+                        f"The {self._cell.robot.name} did not arrive within {MOVE_TIMEOUT_S:.0f} s and was "
+                        "stopped; look what holds it and run the same command again."
+                    )
+                time.sleep(_POLL_S)
+            move.wait(_POLL_S)
+        except BaseException:
+            with suppress(RobotError):
+                move.stop()
+                self._wait_for_rest()
+            raise
+
+    def _wait_for_rest(self) -> None:
+        """Wait until a stopped arm stands; whoever scans on at once would find it moving."""
+        deadline_s = time.monotonic() + STOP_TIMEOUT_S
+        while np.abs(self._cell.robot.state().joint_speeds_rad_s).max() > STANDING_RAD_S:
+            if time.monotonic() > deadline_s:
+                return
+            time.sleep(_POLL_S)
+
+    def _stand(self, joints_rad: FloatArray) -> None:
+        """Wait until the arm has stood still for a while, at its target."""
+        settle_s = 0.0 if self._is_instant else self._cell.settings.scan.settle_s
+        since_s = time.monotonic()
+        while True:
+            state = self._cell.robot.state()
+            if np.abs(state.joint_speeds_rad_s).max() > STANDING_RAD_S:
+                since_s = time.monotonic()
+            elif time.monotonic() - since_s >= settle_s:
+                break
+            self._reporter.raise_if_cancelled()
+            time.sleep(_POLL_S)
+        if np.abs(state.joints_rad - joints_rad).max() > SAME_PLACE_RAD:
+            raise RobotError(
+                f"The {self._cell.robot.name} stands elsewhere than it was sent; look what holds it."
+            )
+
+    def _shoot(self, reconnect: bool) -> tuple[CameraImage, FloatArray]:
+        """Take an image and the camera's pose (4, 4) by the joints and the hand-eye calibration."""
+        cell = self._cell
+        if reconnect:
+            time.sleep(0.0 if self._is_instant else RECONNECT_WAIT_S)
+            with suppress(CameraError):
+                cell.camera.__exit__(None, None, None)
+            cell.camera.__enter__()
+        before = cell.robot.state().joints_rad
+        image = cell.camera.capture()
+        after = cell.robot.state()
+        if np.abs(after.joints_rad - before).max() > SAME_PLACE_RAD:
+            raise RobotError(
+                "The arm moved while an image was taken; keep hands off and run the same command."
+            )
+        return image, after.T_base_flange @ cell.settings.camera.pose
+
+    def _judge(self, frame: RgbdFrame, intrinsics: Intrinsics) -> ViewQuality:
+        place = self._cell.settings.place
+        return check_view(
+            frame, intrinsics, place.crop_box, before=self._last, table_height_m=place.table_height_m
+        )
+
+    def _keep(
+        self, view: PlannedView, frame: RgbdFrame, intrinsics: Intrinsics, problems: tuple[str, ...]
+    ) -> ViewRecord:
+        record = ViewRecord(view, ViewState.POOR if problems else ViewState.TAKEN, problems)
+        self._intrinsics = intrinsics
+        self._last = frame
+        if self._keeper is not None:
+            now = [record if r.view.name == view.name else r for r in self.records]
+            self._keeper.keep(frame, intrinsics, now)
+        is_new = view.name not in self._frames
+        self._frames[view.name] = frame
+        if is_new:
+            fuse_coarsely(self.volume, frame, intrinsics)
+        return record
+
+    def _tell(self, outcome: ViewRecord) -> None:
+        self._note()
+        for problem in outcome.problems:
+            kind = "left out" if not outcome.has_image else "poor"
+            self._reporter.warn(f"View {outcome.view.name} is {kind}: {problem}")
+        self._reporter.progress(STAGE, self._n_taken, len(self.records))
+        if outcome.has_image and self._taken is not None:
+            self._taken(outcome, self._frames[outcome.view.name], self.volume)
+
+    def _note(self) -> None:
+        if self._keeper is not None:
+            self._keeper.note(self.records)
+
+    def _fuse_anew(self) -> None:
+        """A view cannot be taken out of a volume: fuse all again."""
+        assert self._intrinsics is not None, "there are frames"
+        self.volume = empty_coarse_volume(self._cell.settings.place.crop_box)
+        for frame in self._frames.values():
+            fuse_coarsely(self.volume, frame, self._intrinsics)
+
+    @property
+    def _is_instant(self) -> bool:
+        return self._cell.settings.simulation.is_instant and self._cell.settings.robot.kind != "ur5"
+
+    @property
+    def _is_replay(self) -> bool:
+        return self._cell.settings.robot.kind == "replay"

@@ -1,0 +1,49 @@
+"""The whole scan in the simulated cell, in memory."""
+
+from __future__ import annotations
+
+from core.mesh import TriangleMesh
+from core.progress import Reporter
+from core.scan.model import Scan
+from hardware.cell import open_cell, read_cell
+from hardware.cell.settings import CellSettings, SimulationSettings
+from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.views import name_views
+from hardware.simulation.depth_noise import DepthNoise
+from hardware.simulation.placing import world_with
+
+
+def simulate_scan(
+    mesh: TriangleMesh,
+    seed: int,
+    reporter: Reporter,
+    noise: DepthNoise | None = None,
+    is_perfect: bool = False,
+) -> Scan:
+    """Put an object on the simulated cell's platform at random and take its views.
+
+    The images are taken from disturbed poses, the frames carry the undisturbed ones: that is the pose error.
+
+    Args:
+        mesh: the object in metres, z up; where its frame lies does not matter.
+        seed: of the placing, the pose errors and the images.
+        reporter: told after each view.
+        noise: the camera's; none: the cell's.
+        is_perfect: no noise at all and exactly known poses.
+
+    Raises:
+        InputError: the object does not fit into the crop box.
+        Cancelled: somebody asked to stop.
+    """
+    settings = simulated_cell(noise, is_perfect)
+    with open_cell(settings, world_with(mesh, settings.place, seed), seed) as cell:
+        procedure = ScanProcedure(cell, None, reporter)
+        procedure.take(name_views(settings.scan.views_rad))
+        return procedure.scan()
+
+
+def simulated_cell(noise: DepthNoise | None = None, is_perfect: bool = False) -> CellSettings:
+    """Return the shipped simulated cell, with another noise if one is given."""
+    settings = read_cell()
+    simulation = SimulationSettings(is_perfect=is_perfect, noise=noise or settings.simulation.noise)
+    return settings.model_copy(update={"simulation": simulation})
