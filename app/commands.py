@@ -130,7 +130,7 @@ def scan(
         quality = pipeline.quality()
     print(f"{len(quality.views)} views in {session_folder}.")
     for reason in quality.reasons:
-        print(f"The scan is {reason}")
+        print(f"Verdict on the scan: {reason}")
 
 
 def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:

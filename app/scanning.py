@@ -51,14 +51,17 @@ def scan_object(
     """
     from hardware.scanning import ScanKeeper
 
+    is_replay = settings.camera.kind == "replay"
+    if is_replay and (wishes.adaptive or wishes.retake):
+        raise InputError("A recorded scan cannot be taken again; leave out --adaptive and --retake.")
     mesh = _mesh(source, pipeline) if source is not None else None
     seed = pipeline.parameters.seed
     origin = _origin(settings, source, mesh, seed)
     is_done = pipeline.session.is_fresh("scan", {}, origin)
     keeper = ScanKeeper(pipeline.session.path / IN_PROGRESS, origin)
-    if wishes.restart:
+    if wishes.restart or is_replay:  # playing a recording anew costs nothing
         keeper.remove()
-    elif is_done and not keeper.folder.exists():
+    if is_done and not wishes.restart and not keeper.folder.exists():
         if not (wishes.adaptive or wishes.retake):
             return
         keeper.adopt(pipeline.session.folder("scan"))

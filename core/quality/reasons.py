@@ -23,7 +23,7 @@ TABLE_SD_USABLE_M, TABLE_SD_AGAIN_M = 0.0025, 0.006
 RESIDUAL_USABLE_M, RESIDUAL_AGAIN_M = 0.001, 0.0014
 """0.6 mm with refined poses; capacity begins to be 10 % off at 1.2 mm; above 1.4 mm most are."""
 UNSEEN_USABLE = 0.10
-"""More than this makes a scan no worse than usable: a belly below a narrow neck shows itself to no view at all."""
+"""More makes a scan usable, not worse: a belly below a narrow neck shows itself to no view at all."""
 HIDDEN_AREA_USABLE_M2 = 2e-4
 SHIFTED_TABLE_M = 0.003
 MOST_TOLD = 3

@@ -49,15 +49,17 @@ class ScanKeeper:
         if not (self.folder / VIEWS_FILE).exists():
             return []
         table = read_json(self.folder / VIEWS_FILE)
+        records = _records(table)
         if table.get("origin") != self._origin:
+            n_taken = sum(record.has_image for record in records)
             raise SessionError(
-                f"{self.folder} holds {len(table.get('views', []))} views of another scan (other cell, "
-                "object or seed); finish it with its own command, or give --restart to throw them away."
+                f"{self.folder} holds views of another scan ({n_taken}, of another cell, object or seed); "
+                "finish it with its own command, or give --restart to throw them away."
             )
-        return _records(table)
+        return records
 
     def recover(self, records: list[ViewRecord]) -> Scan | None:
-        """Read the images of an interrupted scan; what is there of a view that is not noted or whole, goes."""
+        """Read the images of an interrupted scan; views not noted or not whole go."""
         images = self.folder / FRAMES_FOLDER
         names = [record.view.name for record in records if record.has_image]
         noted = {name for name in names if all((images / (name + end)).exists() for end in ENDINGS)}

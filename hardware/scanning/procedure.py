@@ -94,7 +94,8 @@ class ScanProcedure:
             if failures == MOST_FAILURES_IN_A_ROW:
                 raise StageError(
                     f"{failures} views failed one after the other, the last because: {outcome.problems[0]} "
-                    f"The {self._n_taken} views taken before are kept; put it right and run the same command."
+                    f"What was taken before (views: {self._n_taken}) is kept; put it right and run the same "
+                    "command."
                 )
 
     def retake(self, names: Sequence[str]) -> None:
@@ -116,10 +117,11 @@ class ScanProcedure:
                 self.records[index] = outcome
             if outcome.has_image:
                 self._fuse_anew()
+                self._tell(outcome)
             else:
                 fate = "keeps its old image" if before.has_image else "is left out again"
                 self._reporter.warn(f"View {name} {fate}: {outcome.problems[0]}")
-            self._note()
+                self._note()
 
     def scan(self) -> Scan:
         """Return what was taken.
@@ -229,9 +231,14 @@ class ScanProcedure:
     def _stand(self, joints_rad: FloatArray) -> None:
         """Wait until the arm has stood still for a while, at its target."""
         settle_s = 0.0 if self._is_instant else self._cell.settings.scan.settle_s
-        since_s = time.monotonic()
+        began_s = since_s = time.monotonic()
         while True:
             state = self._cell.robot.state()
+            if time.monotonic() - began_s > MOVE_TIMEOUT_S:
+                raise RobotError(
+                    f"The {self._cell.robot.name} does not come to rest; look what shakes it and run the "
+                    "same command again."
+                )
             if np.abs(state.joint_speeds_rad_s).max() > STANDING_RAD_S:
                 since_s = time.monotonic()
             elif time.monotonic() - since_s >= settle_s:

@@ -25,11 +25,11 @@ from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
 from core.reconstruction import reconstruct
 from core.scan import Scan
+from hardware.cell import read_cell
+from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.depth_noise import DepthNoise
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.objects.catalogue import _vessel
-from hardware.cell import read_cell
-from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.placing import place_on_platform, transform_mesh
 
 OBJECTS = ("mug", "bowl", "plate", "vase", "glass", "thin glass", "box", "bottle")

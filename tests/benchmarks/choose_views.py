@@ -19,8 +19,8 @@ from core.motion.route import path_length
 from core.motion.view_choice import choose_spread_views, coverage
 from core.motion.view_planning import ReachableView, reachable_views
 from core.motion.view_tour import Stop, ViewNet, plan_tour
-from tests.ideal_rings import scan_views
 from tests.core.motion.cell import HOME_RAD, T_FLANGE_CAMERA, TASK, simulated_cell
+from tests.ideal_rings import scan_views
 
 N_VIEWS = 24
 

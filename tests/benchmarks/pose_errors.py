@@ -1,14 +1,13 @@
 """Simulated scans with growing pose errors: where the reconstruction fails and where the verdict warns.
 
-Usage: python -m tests.benchmarks.pose_errors [--omega] [name=value ...]
-The settings are parameters (as on the command line). With --omega, containability is imagined in the
-reconstructed and in the true mesh, too.
+Usage: python -m tests.benchmarks.pose_errors [--omega] [--objects A,B] [--seeds N] ...
+With --omega, containability is imagined in the reconstructed and in the true mesh, too.
 """
 
 from __future__ import annotations
 
+import argparse
 import heapq
-import sys
 from dataclasses import dataclass
 from math import radians
 
@@ -28,14 +27,12 @@ from core.quality import ScanQuality, assess, coarse_volume
 from core.reconstruction import reconstruct
 from core.scan.crop_box import crop_box_of
 from core.workers import WorkerPool
-from hardware.simulation.depth_noise import DepthNoise
-from hardware.simulation.objects import builtin_object
 from hardware.cell import read_cell
 from hardware.scanning.simulated import simulate_scan
+from hardware.simulation.depth_noise import DepthNoise
+from hardware.simulation.objects import builtin_object
 from hardware.simulation.placing import place_on_platform, transform_mesh
 
-OBJECTS = ("mug", "bowl", "plate", "box", "glass")
-SEEDS = (0, 1)
 LEVELS = ((0.0, 0.0), (1.0, 0.25), (2.0, 0.5), (3.0, 1.0), (5.0, 1.5), (8.0, 2.5), (12.0, 4.0))
 """Pose errors in mm and degrees."""
 CELL_M = 0.002
@@ -65,19 +62,20 @@ class Row:
         return abs(self.capacity - 1) <= CAPACITY_HOLDS and self.completeness_m <= COMPLETENESS_HOLDS_M
 
 
-def main(settings: dict[str, str], with_omega: bool) -> None:
-    """Run all levels, objects and seeds and print the tables."""
-    parameters = apply_settings(Parameters(), settings)
+def main(wanted: argparse.Namespace) -> None:
+    """Measure all wanted objects at all wanted pose errors and print a table."""
+    parameters = apply_settings(Parameters(), dict(word.split("=", 1) for word in wanted.settings))
+    errors_mm = [float(word) for word in wanted.errors_mm.split(",")]
+    levels = [level for level in LEVELS if level[0] in errors_mm]
     rows = []
-    with WorkerPool() as pool:
-        if with_omega:
-            pool.start(WORKER_MODULE)
-        for level in LEVELS:
-            for name in OBJECTS:
-                for seed in SEEDS:
-                    rows.append(measure(name, level, seed, parameters, pool if with_omega else None))
+    with WorkerPool(2) as pool:
+        pool.start(WORKER_MODULE)
+        for level in levels:
+            for name in wanted.objects.split(","):
+                for seed in range(wanted.seeds):
+                    rows.append(measure(name, level, seed, parameters, pool if wanted.omega else None))
                     print_row(rows[-1])
-    print_levels(rows)
+    print_levels(rows, levels)
 
 
 def measure(
@@ -184,10 +182,10 @@ def print_row(row: Row) -> None:
     )
 
 
-def print_levels(rows: list[Row]) -> None:
+def print_levels(rows: list[Row], levels: list[tuple[float, float]]) -> None:
     """Print a line for each pose error."""
     print("\npose error      acc  compl  table  resid  held  good usable again  failed without 'again'")
-    for level in LEVELS:
+    for level in levels:
         group = [row for row in rows if row.level == level]
         verdicts = [row.quality.verdict for row in group]
         counts = [verdicts.count(verdict) for verdict in ("good", "usable", "scan again")]
@@ -210,6 +208,16 @@ def print_levels(rows: list[Row]) -> None:
         )
 
 
+def arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks.pose_errors")
+    parser.add_argument("--omega", action="store_true", help="imagine containability, too")
+    parser.add_argument("--objects", default="mug,bowl,plate,box,glass")
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--errors-mm", default="0,1,2,3,5,8,12", help="some of these")
+    parser.add_argument("settings", nargs="*", metavar="NAME=VALUE", help="parameters")
+    return parser.parse_args()
+
+
 if __name__ == "__main__":
-    words = sys.argv[1:]
-    main(dict(word.split("=", 1) for word in words if "=" in word), "--omega" in words)
+    main(arguments())

@@ -10,8 +10,8 @@ from core.pipeline import Pipeline
 from core.progress import Reporter
 from core.session import Session
 from core.workers import WorkerPool
-from hardware.simulation.objects import builtin_object
 from hardware.scanning.simulated import simulate_scan
+from hardware.simulation.objects import builtin_object
 
 QUICK = {
     "reconstruction.voxel_m": 0.005,

@@ -12,8 +12,8 @@ from core.scan.model import CropBox, RgbdFrame, Scan
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH, SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, disturb_pose
 from hardware.simulation.objects.loft import turned
-from tests.ideal_rings import SCAN_RINGS, scan_views
 from hardware.simulation.world import World
+from tests.ideal_rings import SCAN_RINGS, scan_views
 
 PLATFORM_M = 0.08
 TABLE_M = 0.015

@@ -7,10 +7,10 @@ from PIL import Image
 
 from core.geometry import FloatArray, look_at
 from core.progress import Reporter
+from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH, SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, axial_sd_m, disturb, disturb_pose
 from hardware.simulation.objects import builtin_object
-from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.world import World
 
 TABLE = np.array([0.0, 0.0, 0.0])
