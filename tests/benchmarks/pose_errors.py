@@ -99,7 +99,7 @@ def measure(
         float(to_truth_m.mean()),
         float(np.percentile(to_truth_m, 95)),
         completeness_m(truth, result.mesh, platform_m),
-        capacity_ml(result.mesh, platform_m) / capacity_ml(truth, platform_m),
+        capacity_ml(result.mesh, platform_m) / (capacity_ml(truth, platform_m) or np.nan),
         assess(scan, volume, result),
         None if pool is None else (omega(result.mesh, parameters, pool), omega(truth, parameters, pool)),
     )
