@@ -37,6 +37,7 @@ LEVELS = ((0.0, 0.0), (1.0, 0.25), (2.0, 0.5), (3.0, 1.0), (5.0, 1.5), (8.0, 2.5
 """Pose errors in mm and degrees."""
 CELL_M = 0.002
 CAPACITY_HOLDS = 0.1
+SMALLEST_CAPACITY_ML = 1.0
 COMPLETENESS_HOLDS_M = 0.0025
 ABOVE_PLATFORM_M = 0.005
 """The underside is seen by nobody."""
@@ -59,7 +60,8 @@ class Row:
     @property
     def holds(self) -> bool:
         """Whether the capacity is right within a tenth and no wall is missing."""
-        return abs(self.capacity - 1) <= CAPACITY_HOLDS and self.completeness_m <= COMPLETENESS_HOLDS_M
+        capacity_holds = np.isnan(self.capacity) or abs(self.capacity - 1) <= CAPACITY_HOLDS
+        return bool(capacity_holds) and self.completeness_m <= COMPLETENESS_HOLDS_M
 
 
 def main(wanted: argparse.Namespace) -> None:
@@ -99,7 +101,7 @@ def measure(
         float(to_truth_m.mean()),
         float(np.percentile(to_truth_m, 95)),
         completeness_m(truth, result.mesh, platform_m),
-        capacity_ml(result.mesh, platform_m) / (capacity_ml(truth, platform_m) or np.nan),
+        capacity_share(result.mesh, truth, platform_m),
         assess(scan, volume, result),
         None if pool is None else (omega(result.mesh, parameters, pool), omega(truth, parameters, pool)),
     )
@@ -127,6 +129,12 @@ def completeness_m(truth: TriangleMesh, mesh: TriangleMesh, platform_m: float) -
     )
     points = np.asarray(as_open3d.sample_points_uniformly(4000).points)
     return float(distances_m(points[points[:, 2] > platform_m + ABOVE_PLATFORM_M], mesh).mean())
+
+
+def capacity_share(mesh: TriangleMesh, truth: TriangleMesh, floor_m: float) -> float:
+    """What the mesh would hold as a share of what the true one does; NaN where that is nothing."""
+    true_ml = capacity_ml(truth, floor_m)
+    return capacity_ml(mesh, floor_m) / true_ml if true_ml > SMALLEST_CAPACITY_ML else np.nan
 
 
 def capacity_ml(mesh: TriangleMesh, floor_m: float) -> float:

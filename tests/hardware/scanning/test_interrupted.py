@@ -145,7 +145,7 @@ def test_views_of_another_scan_are_refused(world: World, tmp_path: Path) -> None
     with open_cell(small_cell(), world, SEED) as cell:
         for other in ({"object": "bowl", "seed": 3}, {"object": "mug", "seed": 4}, {}):
             with pytest.raises(
-                SessionError, match=r"holds views of another scan \(4, .* --restart"
+                SessionError, match=r"holds views of another scan \(2, .* --restart"
             ) as refused:
                 ScanProcedure(cell, ScanKeeper(tmp_path, other), Listening())
             assert str(tmp_path) in str(refused.value)
