@@ -1,5 +1,5 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
-.PHONY: run test setup lint unit bench accuracy judgement collision-table pose-errors clean
+.PHONY: run test setup lint unit bench accuracy judgement collision-table looking-again pose-errors clean
 
 run: setup
 	.venv/bin/poursight demo
@@ -32,6 +32,9 @@ collision-table: setup
 
 pose-errors: setup
 	.venv/bin/python -m tests.benchmarks.pose_errors
+
+looking-again: setup
+	.venv/bin/python -m tests.benchmarks.looking_again
 
 clean:
 	rm -rf .venv build *.egg-info
