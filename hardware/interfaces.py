@@ -6,7 +6,6 @@ All of them are context managers: entering connects, leaving disconnects, and ea
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Protocol
 
 import numpy.typing as npt
@@ -35,12 +34,7 @@ class CameraImage:
 class _Device(Protocol):
     def __enter__(self) -> object: ...
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None: ...
+    def __exit__(self, *exception: object) -> None: ...
 
 
 class Camera(_Device, Protocol):

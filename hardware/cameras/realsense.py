@@ -6,7 +6,6 @@ import importlib
 import time
 from pathlib import Path
 from threading import Thread
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -77,12 +76,7 @@ class RealSenseCamera:
         self._link = link
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Disconnect."""
         if self._link is not None:
             self._link.close()

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from types import TracebackType
 
 from core.geometry import FloatArray
 from core.progress import Reporter
@@ -49,12 +48,7 @@ class ReplayCamera:
         self.T_base_camera = None
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Forget the views."""
         self._views = None
 

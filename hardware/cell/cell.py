@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from types import TracebackType
 
 from core.errors import InputError
 from core.motion.clearance import MotionScene
@@ -53,13 +52,8 @@ class Cell:
             self._open = devices.pop_all()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._open.__exit__(kind, error, trace)
+    def __exit__(self, *exception: object) -> None:
+        self._open.close()
 
     @property
     def views_rad(self) -> tuple[Joints, ...]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from threading import RLock
-from types import TracebackType
 
 import numpy as np
 import numpy.typing as npt
@@ -36,12 +35,7 @@ class KinematicRobot:
     def __enter__(self) -> KinematicRobot:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self.stop()
 
     def state(self) -> RobotState:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from types import TracebackType
-
 
 class SimulatedGripper:
     """Opens and closes at once.
@@ -20,12 +18,7 @@ class SimulatedGripper:
     def __enter__(self) -> SimulatedGripper:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         pass
 
     @property
