@@ -120,11 +120,6 @@ def scan(
     from hardware.cell import SIMULATED_CELL, read_cell
 
     settings = read_cell(cell_file or SIMULATED_CELL)
-    if settings.is_simulated and source is None:
-        raise InputError(
-            f"The {settings.name} is empty: name the object that stands in it, such as --object mug, or "
-            "give --cell FILE for a real one."
-        )
     with _working(session_folder, choices, workers) as pipeline:
         scan_object(pipeline, settings, source, wishes)
         quality = pipeline.quality()

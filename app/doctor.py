@@ -32,7 +32,7 @@ def examine(cell_file: Path | None) -> int:
         InputError: the cell file cannot be used.
     """
     is_fine = True
-    for finding in chain(_installation(), _cell(cell_file) if cell_file else ()):
+    for finding in chain(_installation(), examine_cell(read_cell(cell_file)) if cell_file else ()):
         mark = "ok  " if finding.problem is None else "BAD "
         print(f"{mark}{finding.subject:<22}{finding.value}")
         if finding.problem is not None:
@@ -45,11 +45,6 @@ def _installation() -> Iterator[Finding]:
     checks: tuple[Callable[[], list[Finding]], ...] = (_python, _packages, _known_bad, _renderer, _disk)
     for check in checks:
         yield from check()
-
-
-def _cell(path: Path) -> Iterator[Finding]:
-    settings = read_cell(path)
-    yield from examine_cell(settings)
 
 
 def _python() -> list[Finding]:

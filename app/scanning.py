@@ -97,11 +97,7 @@ def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
     from hardware.cell import open_cell
     from hardware.simulation.placing import world_with
 
-    world = world_with(mesh, settings.place, seed) if mesh is not None and settings.is_simulated else None
-    if mesh is not None and world is None:
-        raise InputError(
-            f"The {settings.name} is not simulated: put the object on its platform, leave out --object."
-        )
+    world = None if mesh is None else world_with(mesh, settings.place, seed)
     return open_cell(settings, world, seed)
 
 

@@ -77,7 +77,8 @@ def open_cell(settings: CellSettings, world: World | None = None, seed: int = 0)
     """
     if settings.is_simulated != (world is not None):
         raise InputError(
-            f"The {settings.name} is simulated: name the object that stands in it, such as --object mug."
+            f"The {settings.name} is simulated: name the object that stands in it, such as --object mug; "
+            "for a real cell give --cell FILE."
             if settings.is_simulated
             else f"The {settings.name} is real: put the object on its platform and leave out --object."
         )
