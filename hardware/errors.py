@@ -23,5 +23,45 @@ class RobotError(DeviceError):
     """The robot cannot do what it was asked to."""
 
 
+class RobotUnreachable(RobotError):
+    """Nobody answers at the robot's address, or somebody who is no UR controller."""
+
+
+class RobotLost(RobotError):
+    """The link to the robot was there and is lost; what the arm does now is not known."""
+
+
+class WrongRobot(RobotError):
+    """The arm is not the one that the cell file names: its kinematics differ."""
+
+
+class NotInRemoteControl(RobotError):
+    """The controller is in local control: only its own panel moves the arm."""
+
+
+class RobotNotReady(RobotError):
+    """Power is off, brakes hold, or the safety system does not let the arm move."""
+
+
+class MoveRefused(RobotError):
+    """The controller did not take the move."""
+
+
 class RobotStopped(RobotError):
     """The robot was stopped on its way; it stands somewhere between start and target."""
+
+
+class ProtectiveStop(RobotStopped):
+    """The controller stopped the arm, for example because it touched something."""
+
+
+class EmergencyStop(RobotStopped):
+    """Somebody pressed an emergency stop."""
+
+
+class ProgramStopped(RobotStopped):
+    """The control program on the robot was stopped or paused."""
+
+
+class TrackingLost(RobotStopped):
+    """The arm was not where it should have been and was stopped."""

@@ -5,13 +5,16 @@ All of them are context managers: entering connects, leaving disconnects, and ea
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy.typing as npt
 
 from core.geometry import FloatArray
+from core.motion.trajectory import JointTrajectory
 from core.scan.model import ColorImage, DepthImage, Intrinsics
+from hardware.modes import RobotMode, SafetyMode
 
 
 @dataclass(frozen=True)
@@ -62,15 +65,36 @@ class RobotState:
 
     Attributes:
         joints_rad: (6,) where the joints are.
+        target_joints_rad: (6,) where the controller wants them to be at this moment.
         joint_speeds_rad_s: (6,) how fast they turn.
         T_base_flange: (4, 4) where that puts the flange.
-        time_s: when it was so, in seconds of a clock that only goes forwards.
+        T_base_tool: (4, 4) the tool's pose, as the controller reports it.
+        robot_mode: how far the arm is switched on.
+        safety_mode: whether the safety system lets it move.
+        is_program_running: whether it would take a command.
+        tool_outputs: the two digital outputs of the tool, as read back.
+        speed_scaling: what the speed slider makes of all speeds, 0 to 1.
+        controller_s: the controller's own time stamp, which rises as long as it sends.
+        time_s: when this state came, in seconds of `time.monotonic`.
     """
 
     joints_rad: FloatArray
+    target_joints_rad: FloatArray
     joint_speeds_rad_s: FloatArray
     T_base_flange: FloatArray
+    T_base_tool: FloatArray
+    robot_mode: RobotMode
+    safety_mode: SafetyMode
+    is_program_running: bool
+    tool_outputs: tuple[bool, bool]
+    speed_scaling: float
+    controller_s: float
     time_s: float
+
+    @property
+    def age_s(self) -> float:
+        """How long ago it came."""
+        return time.monotonic() - self.time_s
 
 
 class Move(Protocol):
@@ -101,7 +125,9 @@ class Move(Protocol):
 
 
 class Robot(_Device, Protocol):
-    """A six-jointed arm.
+    """A six-jointed arm. Every method is safe from any thread.
+
+    Entering it connects and checks that it is the arm of the cell file; leaving stops what moves.
 
     Attributes:
         name: what people call it.
@@ -113,22 +139,44 @@ class Robot(_Device, Protocol):
         """Return the newest state.
 
         Raises:
-            RobotError: the robot cannot be reached.
+            RobotLost: no state came for some time.
         """
         ...
 
     def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> Move:
         """Start to move through joint configurations (N, 6), straight in joint space; return at once.
 
-        The path must have been checked: the robot itself knows no obstacles.
+        The arm stands at each of them. The path must have been checked: the robot itself knows no obstacles.
 
         Raises:
-            RobotError: the robot refuses or cannot be reached.
+            RobotError: the robot is elsewhere, moving, not ready, refuses, or cannot be reached.
+        """
+        ...
+
+    def follow(self, trajectory: JointTrajectory) -> Move:
+        """Start to follow a checked tool path, given as a timed motion of the joints; return at once.
+
+        Where the speed slider or a slow link hold it up, it takes longer; it never hurries to catch up.
+
+        Raises:
+            RobotError: as with `move_joints`.
         """
         ...
 
     def stop(self) -> None:
-        """Stop whatever moves; safe from any thread."""
+        """Stop whatever moves; works while another call waits."""
+        ...
+
+    def recover(self) -> None:
+        """After a stop, bring the robot to where it takes moves again; nothing goes on that was stopped.
+
+        Unlocks a protective stop, switches on power and brakes, starts the control program anew; connects
+        again when the link was lost.
+
+        Raises:
+            RobotError: a person has to do something first, such as releasing the emergency stop; the
+                sentence says what.
+        """
         ...
 
 

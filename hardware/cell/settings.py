@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from core.geometry import FloatArray, rotation_error
+from core.motion.pour.settings import MotionSettings
 from core.parameters.fields import OURS, Group, choice, quantity
 from core.scan.model import CropBox, Intrinsics
 from hardware.simulation.depth_noise import DepthNoise
@@ -24,6 +25,20 @@ Edge = Annotated[float, Field(gt=0, le=1)]
 Angle = Annotated[float, Field(ge=-2 * pi, le=2 * pi)]
 Joints = tuple[Angle, Angle, Angle, Angle, Angle, Angle]
 Row = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
+
+
+_GRASP: tuple[Row, Row, Row, Row] = (
+    (1.0, 0.0, 0.0, 0.0),
+    (0.0, 0.0, -1.0, 0.0),
+    (0.0, 1.0, 0.0, 0.15),
+    (0.0, 0.0, 0.0, 1.0),
+)
+"""The cup's axis 0.15 m before the flange, its mouth towards -y, where the camera is."""
+
+
+def _refuse_no_pose(name: str, pose: FloatArray) -> None:
+    if np.abs(pose[3] - [0, 0, 0, 1]).max() > 0 or rotation_error(pose[:3, :3]) > ROTATION_TOLERANCE:
+        raise ValueError(f"{name} is no pose: its 3x3 part must be a rotation, its last row 0 0 0 1")
 
 
 class CameraSettings(Group):
@@ -57,11 +72,7 @@ class CameraSettings(Group):
 
     @model_validator(mode="after")
     def _fits(self) -> CameraSettings:
-        pose = self.pose
-        if np.abs(pose[3] - [0, 0, 0, 1]).max() > 0 or rotation_error(pose[:3, :3]) > ROTATION_TOLERANCE:
-            raise ValueError(
-                "T_flange_camera is no pose: its 3x3 part must be a rotation, its last row 0 0 0 1"
-            )
+        _refuse_no_pose("T_flange_camera", self.pose)
         if self.kind == "replay" and self.recording is None:
             raise ValueError("a replay camera needs 'recording', the session or folder to play")
         if self.kind == "openni" and self.intrinsics is None:
@@ -131,6 +142,31 @@ class GripperSettings(Group):
     length_m: float = quantity(
         0.12, "How far it reaches beyond the flange.", unit="m", source=_CELL, low=0, high=0.5
     )
+    T_flange_grasp: tuple[Row, Row, Row, Row] = choice(
+        _GRASP,
+        "The robot's tool frame: origin on the axis of the cup in the hand, z along it to the cup's mouth.",
+        source=_CELL,
+    )
+    grip_height_m: float = quantity(
+        0.06, "How far above the cup's base it grips.", unit="m", source=_CELL, low=0.005, high=0.5
+    )
+    payload_kg: float = quantity(
+        1.2, "Mass at the flange: gripper, camera and full cup.", unit="kg", source=_CELL, low=0, high=5
+    )
+    payload_center_m: Point = quantity(
+        (0.0, -0.02, 0.07), "Their centre of mass, in the flange's frame.", unit="m", source=_CELL
+    )
+    action_s: float = quantity(0.5, "Time it takes to open or close.", unit="s", source=_CELL, low=0, high=10)
+
+    @model_validator(mode="after")
+    def _grasps(self) -> GripperSettings:
+        _refuse_no_pose("T_flange_grasp", self.grasp_pose)
+        return self
+
+    @property
+    def grasp_pose(self) -> FloatArray:
+        """`T_flange_grasp` (4, 4), which is the robot's tool frame."""
+        return np.array(self.T_flange_grasp)
 
 
 class BoxSettings(Group):
@@ -241,6 +277,7 @@ class CellSettings(Group):
     robot: RobotSettings
     gripper: GripperSettings = GripperSettings()
     place: PlaceSettings
+    motion: MotionSettings = MotionSettings()
     obstacles: tuple[BoxSettings, ...] = ()
     scan: ScanSettings
     simulation: SimulationSettings = SimulationSettings()

@@ -12,6 +12,7 @@ from core.motion.arm_models import ArmModel
 from core.motion.kinematics import N_JOINTS, flange_pose, within_limits
 from hardware.errors import RobotError, RobotStopped
 from hardware.interfaces import RobotState
+from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.joint_motion import JointMotion
 
 _POLL_S = 0.004
@@ -43,7 +44,11 @@ class KinematicRobot:
         with self._lock:
             now_s = time.monotonic()
             joints, speeds, _ = self._motion.at(self._elapsed(now_s))
-            return RobotState(joints, speeds, flange_pose(self._arm, joints), now_s)
+            flange = flange_pose(self._arm, joints)
+            return RobotState(
+                joints, joints, speeds, flange, flange, RobotMode.RUNNING, SafetyMode.NORMAL, True,
+                (False, False), 1.0, now_s, now_s,
+            )  # fmt: skip
 
     def move_joints(
         self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float

@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry import FloatArray, invert_pose
+from core.motion.trajectory import JointTrajectory
 from hardware.cameras.replay import ReplayCamera
 from hardware.interfaces import RobotState
+from hardware.modes import RobotMode, SafetyMode
 
 
 class ReplayRobot:
@@ -35,15 +37,28 @@ class ReplayRobot:
         """Return where the last given view was taken from."""
         T_base_camera = self._camera.T_base_camera
         pose = np.eye(4) if T_base_camera is None else T_base_camera @ self._T_camera_flange
-        return RobotState(np.zeros(6), np.zeros(6), pose, time.monotonic())
+        now_s = time.monotonic()
+        zeros = np.zeros(6)
+        return RobotState(
+            zeros, zeros, zeros, pose, pose, RobotMode.RUNNING, SafetyMode.NORMAL, True, (False, False),
+            1.0, now_s, now_s,
+        )  # fmt: skip
 
     def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> _NoMove:
         """Nothing moves."""
         del path_rad, speed_rad_s, acceleration_rad_s2
         return _NoMove()
 
+    def follow(self, trajectory: JointTrajectory) -> _NoMove:
+        """Nothing moves."""
+        del trajectory
+        return _NoMove()
+
     def stop(self) -> None:
         """Nothing moves."""
+
+    def recover(self) -> None:
+        """Nothing was stopped."""
 
 
 class _NoMove:

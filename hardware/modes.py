@@ -1,0 +1,51 @@
+"""What a UR controller says of itself; the numbers are those of its data interface (RTDE)."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class RobotMode(IntEnum):
+    """How far the arm is switched on."""
+
+    NO_CONTROLLER = -1
+    DISCONNECTED = 0
+    CONFIRM_SAFETY = 1
+    BOOTING = 2
+    POWER_OFF = 3
+    POWER_ON = 4
+    IDLE = 5
+    BACKDRIVE = 6
+    RUNNING = 7
+    UPDATING_FIRMWARE = 8
+
+    @property
+    def words(self) -> str:
+        """For people."""
+        return self.name.lower().replace("_", " ")
+
+
+class SafetyMode(IntEnum):
+    """Whether the safety system lets the arm move."""
+
+    NORMAL = 1
+    REDUCED = 2
+    PROTECTIVE_STOP = 3
+    RECOVERY = 4
+    SAFEGUARD_STOP = 5
+    SYSTEM_EMERGENCY_STOP = 6
+    ROBOT_EMERGENCY_STOP = 7
+    VIOLATION = 8
+    FAULT = 9
+    VALIDATE_JOINT_ID = 10
+    UNDEFINED = 11
+
+    @property
+    def may_move(self) -> bool:
+        """Whether the arm may move in it."""
+        return self in (SafetyMode.NORMAL, SafetyMode.REDUCED)
+
+    @property
+    def words(self) -> str:
+        """For people."""
+        return self.name.lower().replace("_", " ")
