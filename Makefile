@@ -1,5 +1,5 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
-.PHONY: run test setup lint unit bench accuracy judgement collision-table looking-again pose-errors clean
+.PHONY: run test setup lint unit bench accuracy judgement collision-table looking-again pose-errors pour-plans pour-faults pour-soak clean
 
 run: setup
 	.venv/bin/poursight demo
@@ -35,6 +35,15 @@ pose-errors: setup
 
 looking-again: setup
 	.venv/bin/python -m tests.benchmarks.looking_again
+
+pour-plans: setup
+	.venv/bin/python -m tests.benchmarks.pour_plans
+
+pour-faults: setup
+	.venv/bin/python -m tests.benchmarks.pour_faults
+
+pour-soak: setup
+	.venv/bin/python -m tests.benchmarks.pour_soak
 
 clean:
 	rm -rf .venv build *.egg-info

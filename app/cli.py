@@ -25,6 +25,10 @@ CellOption = Annotated[
     Optional[Path],  # noqa: UP045
     typer.Option("--cell", metavar="FILE", help="The cell's file; by default the simulated cell."),
 ]
+PourCellOption = Annotated[
+    Optional[Path],  # noqa: UP045
+    typer.Option("--cell", metavar="FILE", help="The cell's file; by default the cell of the scan."),
+]
 PresetOption = Annotated[
     Optional[str],  # noqa: UP045 - typer reads it at run time
     typer.Option("--preset", metavar="P", help="default, paper, authors, or a preset file."),
@@ -122,6 +126,42 @@ def imagine(
 
 
 @app.command()
+def plan(session: SessionArgument, cell: PourCellOption = None, workers: WorkersOption = None) -> None:
+    """Say which of the imagined pours the arm can make, and what the chosen one looks like."""
+    from app import commands
+
+    commands.plan(session, cell, workers)
+
+
+@app.command()
+def pour(
+    session: SessionArgument,
+    cell: PourCellOption = None,
+    yes: Annotated[bool, typer.Option("--yes", help="Pour without asking.")] = False,
+    workers: WorkersOption = None,
+) -> None:
+    """Show the plan, ask, and let the arm pour; a stopped pour is backed off from and planned anew."""
+    from app import commands
+
+    commands.pour(session, cell, yes, workers)
+
+
+@app.command()
+def outcome(
+    session: SessionArgument,
+    spilled: Annotated[
+        Optional[int],  # noqa: UP045
+        typer.Option("--spilled", min=0, help="Candies beside the object."),
+    ] = None,
+    remarks: Annotated[str, typer.Option("--remarks", help="What else was seen.")] = "",
+) -> None:
+    """Enter what became of the candies of the newest pour."""
+    from app import commands
+
+    commands.outcome(session, spilled, remarks)
+
+
+@app.command()
 def report(session: SessionArgument, workers: WorkersOption = None) -> None:
     """Render the evidence of a session and write its report.html."""
     from app import commands
@@ -141,7 +181,7 @@ def demo(
     workers: WorkersOption = None,
     seed: SeedOption = None,
 ) -> None:
-    """Do the whole job in the simulated cell: scan, reconstruct, imagine, report."""
+    """Do the whole job in the simulated cell: scan, reconstruct, imagine, pour, report."""
     from app import commands
 
     out = out or Path("demo") / name
@@ -165,6 +205,31 @@ def doctor(cell: CellOption = None) -> None:
     from app.doctor import examine
 
     raise typer.Exit(examine(cell))
+
+
+@app.command("ur-controller")
+def ur_controller(
+    address: Annotated[
+        str, typer.Option("--address", metavar="ADDRESS", help="On loopback: 127.x.y.z.")
+    ] = "127.0.0.1",
+    model: Annotated[str, typer.Option("--model", metavar="MODEL", help="UR5 or UR5e.")] = "UR5",
+    version: Annotated[
+        str, typer.Option("--version", metavar="V", help="PolyScope: 3.15 (125 Hz) or 5.11 (500 Hz).")
+    ] = "3.15",
+    speed_up: Annotated[
+        float, typer.Option("--speed-up", min=0.1, max=20, help="How much faster than the clock it runs.")
+    ] = 1.0,
+    fault: Annotated[
+        Optional[list[str]],  # noqa: UP045
+        typer.Option(
+            "--fault", metavar="LINE", help="Such as 'in 5 protective stop', 'when moving link drop'."
+        ),
+    ] = None,
+) -> None:
+    """Run a simulated UR controller, which ur_rtde takes for a real one, until Ctrl-C."""
+    from app.controller import serve_controller
+
+    serve_controller(address, model, version, speed_up, fault or [])
 
 
 def main() -> None:

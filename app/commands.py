@@ -128,8 +128,35 @@ def scan(
         print(f"Verdict on the scan: {reason}")
 
 
+def plan(session_folder: Path, cell_file: Path | None, workers: int | None) -> None:
+    """Say which pours the arm can make."""
+    from app import pouring
+
+    with _working(session_folder, Choices(None, [], None), workers, existing=True) as pipeline:
+        pouring.plan(pipeline, cell_file)
+
+
+def pour(session_folder: Path, cell_file: Path | None, is_confirmed: bool, workers: int | None) -> None:
+    """Pour, after a confirmation."""
+    from app import pouring
+
+    face = TerminalReporter()
+    with _working(session_folder, Choices(None, [], None), workers, existing=True, face=face) as pipeline:
+        folder = pouring.pour(pipeline, None if is_confirmed else face, cell_file)
+    print(f"Kept in {folder}.")
+
+
+def outcome(session_folder: Path, spilled: int | None, remarks: str) -> None:
+    """Enter what was spilled in the newest pour."""
+    from app.outcome import enter_outcome
+
+    with Session.open(session_folder) as session:
+        print(enter_outcome(session.path, spilled, remarks).sentence)
+
+
 def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
     """Do the whole job with a built-in object."""
+    from app import pouring
     from hardware.cell import read_cell
     from hardware.simulation.objects import builtin_object
 
@@ -137,14 +164,20 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
     with _working(out, choices, workers) as pipeline:
         scan_object(pipeline, read_cell(), name)
         result = pipeline.imagination()
+        _print_verdict(result)
+        if result.choice is not None:
+            pouring.pour(pipeline, None, None)
         path = pipeline.report()
-    _print_verdict(result)
     print(f"Report: {path}")
 
 
 @contextmanager
 def _working(
-    folder: Path, choices: Choices, workers: int | None, existing: bool = False
+    folder: Path,
+    choices: Choices,
+    workers: int | None,
+    existing: bool = False,
+    face: TerminalReporter | None = None,
 ) -> Iterator[Pipeline]:
     """Hold the session, start the workers, show progress, and remember the parameters."""
     if existing and not folder.exists():
@@ -153,7 +186,7 @@ def _working(
         )
     preset, chosen = choices.parameters(folder)
     changes = {name: value for name, (_, value) in difference(chosen, Parameters()).items()}
-    with WorkerPool(workers) as pool, TerminalReporter() as reporter:
+    with WorkerPool(workers) as pool, face or TerminalReporter() as reporter:
         pool.start(WORKER_MODULE)
         _print_difference(preset, chosen)
         session = Session.open(folder) if existing else Session.create_or_open(folder)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from core.errors import InputError, StageError
 from core.pipeline import Pipeline
+from core.progress import Reporter
 
 if TYPE_CHECKING:
     from core.mesh import TriangleMesh
@@ -54,7 +55,7 @@ def scan_object(
     is_replay = settings.camera.kind == "replay"
     if is_replay and (wishes.adaptive or wishes.retake):
         raise InputError("A recorded scan cannot be taken again; leave out --adaptive and --retake.")
-    mesh = _mesh(source, pipeline) if source is not None else None
+    mesh = object_mesh(source, pipeline.reporter) if source is not None else None
     seed = pipeline.parameters.seed
     origin = _origin(settings, source, mesh, seed)
     is_done = pipeline.session.is_fresh("scan", {}, origin)
@@ -101,14 +102,19 @@ def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
     return open_cell(settings, world, seed)
 
 
-def _mesh(source: str, pipeline: Pipeline) -> TriangleMesh:
+def object_mesh(source: str, reporter: Reporter) -> TriangleMesh:
+    """Return a built-in object by its name, or a mesh from its file.
+
+    Raises:
+        InputError: there is no such object, or the file cannot be used.
+    """
     from core.mesh_file import read_mesh
     from hardware.simulation.objects import BUILTIN_OBJECTS, builtin_object
 
     path = Path(source)
     if source in BUILTIN_OBJECTS or not (path.suffix or path.exists()):
         return builtin_object(source)
-    return read_mesh(path, pipeline.reporter)
+    return read_mesh(path, reporter)
 
 
 def _origin(

@@ -28,6 +28,7 @@ class TerminalReporter(Reporter):
         self._started_s: dict[str, float] = {}
         self._last_line_s: dict[str, float] = {}
         self._progress: Progress | None = None
+        self._leaving: threading.Timer | None = None
         self.warnings: list[str] = []
 
     def __enter__(self) -> TerminalReporter:
@@ -67,6 +68,38 @@ class TerminalReporter(Reporter):
         self.warnings.append(sentence)
         self._console.print(f"Note: {sentence}", style="yellow", markup=False, soft_wrap=True)
 
+    def ask(self, question: str) -> bool:
+        """Ask a question that only 'y' or 'yes' answers with yes."""
+        return self.ask_text(f"{question} [y/N]").lower() in ("y", "yes")
+
+    def ask_number(self, question: str) -> int | None:
+        """Ask for a whole number from 0; none when nothing is entered."""
+        while True:
+            text = self.ask_text(question)
+            if not text:
+                return None
+            if text.isdecimal():
+                return int(text)
+            self._console.print("A whole number, please, such as 3.")
+
+    def ask_text(self, question: str) -> str:
+        """Ask for a line of text; the bars stand aside meanwhile."""
+        if self._progress is not None:
+            self._progress.stop()
+        try:
+            return self._console.input(f"{question} ", markup=False).strip()
+        except EOFError:
+            return ""
+        finally:
+            if self._progress is not None:
+                self._progress.start()
+
+    def forget_cancel(self) -> None:
+        """Go on: what Ctrl-C stopped has stopped, and whoever pressed it is asked what to do now."""
+        if self._leaving is not None:
+            self._leaving.cancel()
+        super().forget_cancel()
+
     def _print_line(self, stage: str, done: float, total: float) -> None:
         now = time.monotonic()
         started = self._started_s.setdefault(stage, now)
@@ -85,9 +118,9 @@ class TerminalReporter(Reporter):
     def _on_interrupt(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002
         """Ask the work to stop; what does not listen in time (a long call into C) is left behind."""
         self.cancel()
-        timer = threading.Timer(_PATIENCE_S, self._leave)
-        timer.daemon = True
-        timer.start()
+        self._leaving = threading.Timer(_PATIENCE_S, self._leave)
+        self._leaving.daemon = True
+        self._leaving.start()
 
     def _leave(self) -> None:
         # Workers see their parent go and end; a half-written stage is cleared away at the next start.

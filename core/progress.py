@@ -27,6 +27,10 @@ class Reporter:
         """Ask the running stage to stop; safe from any thread."""
         self._cancel.set()
 
+    def forget_cancel(self) -> None:
+        """Go on listening: what somebody asked to stop has stopped."""
+        self._cancel.clear()
+
     def raise_if_cancelled(self) -> None:
         """Raise `Cancelled` if somebody asked to stop."""
         if self._cancel.is_set():

@@ -74,6 +74,7 @@ class MotionScene:
         self._links = np.array([capsule.link for capsule in capsules])
         self._ends_m = np.array([(capsule.start_m, capsule.end_m) for capsule in capsules])
         self._radii_m = np.array([capsule.radius_m for capsule in capsules])
+        self._reaches_m = np.linalg.norm(self._ends_m[:, 1] - self._ends_m[:, 0], axis=1) / 2
         self._self_pairs = np.array(shape.pairs, dtype=int).reshape(-1, 2)
         self._box_pairs = _box_pairs(capsules, self.obstacles)
         self._T_box_base = np.array([np.linalg.inv(box.T_base_box) for box in self.obstacles]).reshape(
@@ -89,28 +90,55 @@ class MotionScene:
         """Return the smallest distances of configurations (N, 6); exact for the capsules and boxes."""
         joints = np.asarray(joints_rad, dtype=float)
         parts = [self._distances(joints[k : k + _CHUNK]) for k in range(0, len(joints), _CHUNK)]
-        distances = np.concatenate(parts)
+        distances = np.concatenate([np.zeros((0, len(self._pair_names))), *parts])
         pair = distances.argmin(axis=1)
         return Clearance(distances[np.arange(len(joints)), pair], pair, self._pair_names)
 
     def _distances(self, joints: FloatArray) -> FloatArray:
-        """Distances (N, P) of all pairs."""
+        """Distances (N, P) of all pairs: the smallest of each configuration is exact, the others may be too
+        small.
+
+        Balls around the capsules tell which pairs can be the nearest one; only these are looked at closer.
+        """
         poses = link_poses(self.arm, joints)[:, self._links]
         ends = self._ends_m @ np.swapaxes(poses[..., :3, :3], -1, -2) + poses[..., None, :3, 3]
-        return np.concatenate([self._to_itself(ends), self._to_boxes(ends)], axis=1)
+        distances = self._lower_bounds(ends.mean(axis=-2))
+        rows = np.arange(len(joints))
+        first = distances.argmin(axis=1)
+        nearest = self._exact(ends, rows, first)
+        maybe = distances < nearest[:, None]
+        maybe[rows, first] = False
+        others, pairs = np.nonzero(maybe)
+        distances[rows, first] = nearest
+        distances[others, pairs] = self._exact(ends, others, pairs)
+        return distances
 
-    def _to_itself(self, ends: FloatArray) -> FloatArray:
-        i, j = self._self_pairs.T
-        between = segment_segment_distance(ends[:, i, 0], ends[:, i, 1], ends[:, j, 0], ends[:, j, 1])
-        return np.asarray(between - self._radii_m[i] - self._radii_m[j])
+    def _lower_bounds(self, middles: FloatArray) -> FloatArray:
+        """No pair (N, P) is nearer than this; for the capsules' middles (N, C, 3)."""
+        (i, j), (c, b) = self._self_pairs.T, self._box_pairs.T
+        around = self._radii_m + self._reaches_m
+        between = middles[:, i] - middles[:, j]
+        T = self._T_box_base
+        in_boxes = np.einsum("bij,ncj->ncbi", T[:, :3, :3], middles) + T[:, :3, 3]
+        outside = np.maximum(np.abs(in_boxes) - self._half_sizes_m, 0)[:, c, b]
+        to_itself = np.linalg.norm(between, axis=-1) - around[i] - around[j]
+        return np.concatenate([to_itself, np.linalg.norm(outside, axis=-1) - around[c]], axis=1)
 
-    def _to_boxes(self, ends: FloatArray) -> FloatArray:
-        i, j = self._box_pairs.T
-        T = self._T_box_base[j]
-        in_box = ends[:, i] @ np.swapaxes(T[:, :3, :3], -1, -2) + T[:, None, :3, 3]
-        half_sizes = np.broadcast_to(self._half_sizes_m[j], (len(ends), len(j), 3))
-        distance = segment_box_distance(in_box[:, :, 0], in_box[:, :, 1], half_sizes)
-        return np.asarray(distance - self._radii_m[i])
+    def _exact(self, ends: FloatArray, rows: IntArray, pairs: IntArray) -> FloatArray:
+        """Exact distances (K,) of pairs (K,) in rows (K,) of the capsules' ends (N, C, 2, 3)."""
+        distances = np.empty(len(rows))
+        n_self = len(self._self_pairs)
+        of_itself = pairs < n_self
+        i, j = self._self_pairs[pairs[of_itself]].T
+        a, b = ends[rows[of_itself], i], ends[rows[of_itself], j]
+        between = segment_segment_distance(a[:, 0], a[:, 1], b[:, 0], b[:, 1])
+        distances[of_itself] = between - self._radii_m[i] - self._radii_m[j]
+        c, box = self._box_pairs[pairs[~of_itself] - n_self].T
+        T = self._T_box_base[box]
+        near = ends[rows[~of_itself], c] @ np.swapaxes(T[:, :3, :3], -1, -2) + T[:, None, :3, 3]
+        to_box = segment_box_distance(near[:, 0], near[:, 1], self._half_sizes_m[box])
+        distances[~of_itself] = to_box - self._radii_m[c]
+        return distances
 
 
 def _box_pairs(capsules: Sequence[Capsule], obstacles: Sequence[Obstacle]) -> IntArray:

@@ -7,16 +7,20 @@ Hawkins, "Analytic Inverse Kinematics for the Universal Robots UR-5/UR-10 Arms",
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+import numpy.typing as npt
 
-from core.geometry import BoolArray, FloatArray
+from core.geometry import BoolArray, FloatArray, IntArray
 from core.motion.arm_models import ArmModel
 from core.motion.kinematics import TURN_RAD, flange_pose, joint_pose
 
 N_BRANCHES = 8
+_SIGNS = tuple(product((1, -1), repeat=3))
+"""Shoulder, wrist and elbow of each branch."""
 _SAME_RAD = 1e-6
 """Branches that are nearer to each other are one: they merge where the arm is stretched."""
 _WRIST_SINE = 1e-6
@@ -28,7 +32,7 @@ _POSE_TOLERANCE = 1e-6
 
 @dataclass(frozen=True)
 class InverseBranches:
-    """All configurations that bring the flange to N poses.
+    """All configurations that bring the flange to N poses; 8 branches, or those that were asked for.
 
     Attributes:
         joints_rad: (N, 8, 6), each joint within half a turn of 0; zeros where there is no branch.
@@ -43,14 +47,22 @@ class InverseBranches:
     undetermined: BoolArray
 
 
-def inverse_kinematics(arm: ArmModel, T_base_flange: FloatArray) -> InverseBranches:
-    """Find all branches for poses (N, 4, 4); a pose out of reach has none, a singular one is marked."""
+def inverse_kinematics(
+    arm: ArmModel, T_base_flange: FloatArray, branches: Sequence[int] = range(N_BRANCHES)
+) -> InverseBranches:
+    """Find branches for poses (N, 4, 4); a pose out of reach has none, a singular one is marked.
+
+    Args:
+        arm: whose.
+        T_base_flange: (N, 4, 4).
+        branches: which ones, 0 to 7: `branch_of` tells a configuration's.
+    """
     n = len(T_base_flange)
-    joints = np.zeros((n, N_BRANCHES, 6))
-    found = np.zeros((n, N_BRANCHES), dtype=bool)
-    undetermined = np.zeros((n, N_BRANCHES), dtype=bool)
-    for k, signs in enumerate(product((1, -1), repeat=3)):
-        joints[:, k], found[:, k], undetermined[:, k] = _branch(arm, T_base_flange, *signs)
+    joints = np.zeros((n, len(branches), 6))
+    found = np.zeros((n, len(branches)), dtype=bool)
+    undetermined = np.zeros((n, len(branches)), dtype=bool)
+    for k, branch in enumerate(branches):
+        joints[:, k], found[:, k], undetermined[:, k] = _branch(arm, T_base_flange, *_SIGNS[branch])
     found &= _reaches(arm, joints, T_base_flange)
     joints[~found] = 0
     return InverseBranches(joints, found, undetermined)
@@ -64,6 +76,20 @@ def configurations(arm: ArmModel, T_base_flange: FloatArray) -> FloatArray:
         if all(np.abs(_half_turn(joints - other)).max() > _SAME_RAD for other in different):
             different.append(joints)
     return np.array(different).reshape(-1, 6)
+
+
+def branch_of(arm: ArmModel, joints_rad: npt.ArrayLike) -> IntArray:
+    """Return on which branch (...), 0 to 7, configurations (..., 6) are; a singular one is on either.
+
+    The three factors of the Jacobian's determinant change their signs between the branches: on which side of
+    the base's axis the wrist is, the sine of joint 5, and the sine of joint 3.
+    """
+    joints = np.asarray(joints_rad, dtype=float)
+    flange = flange_pose(arm, joints)
+    center = flange[..., :3, 3] - arm.d_m[5] * flange[..., :3, 2]
+    ahead = center[..., 0] * np.cos(joints[..., 0]) + center[..., 1] * np.sin(joints[..., 0])
+    shoulder, wrist, elbow = ahead < 0, np.sin(joints[..., 4]) < 0, np.sin(joints[..., 2]) < 0
+    return np.asarray(4 * shoulder + 2 * wrist + elbow, dtype=np.int64)
 
 
 def _branch(

@@ -26,10 +26,17 @@ def link_poses(arm: ArmModel, joints_rad: npt.ArrayLike) -> FloatArray:
         joints_rad: (..., 6).
     """
     joints = np.asarray(joints_rad, dtype=float)
+    c, s = np.cos(joints), np.sin(joints)
+    alpha = np.array(arm.alpha_rad)
+    ca, sa, a = np.cos(alpha), np.sin(alpha), np.array(arm.a_m)
+    steps = np.zeros((*joints.shape, 4, 4))
+    steps[..., 0, 0], steps[..., 0, 1], steps[..., 0, 2], steps[..., 0, 3] = c, -s * ca, s * sa, a * c
+    steps[..., 1, 0], steps[..., 1, 1], steps[..., 1, 2], steps[..., 1, 3] = s, c * ca, -c * sa, a * s
+    steps[..., 2, 1], steps[..., 2, 2], steps[..., 2, 3], steps[..., 3, 3] = sa, ca, np.array(arm.d_m), 1
     poses = np.empty((*joints.shape[:-1], N_JOINTS + 1, 4, 4))
     poses[..., 0, :, :] = np.eye(4)
     for k in range(N_JOINTS):
-        poses[..., k + 1, :, :] = poses[..., k, :, :] @ joint_pose(arm, k, joints[..., k])
+        np.matmul(poses[..., k, :, :], steps[..., k, :, :], out=poses[..., k + 1, :, :])
     return poses
 
 

@@ -8,6 +8,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
+
 from core.collision import CollisionModel, from_parts
 from core.errors import SessionError
 from core.files import read_json, write_json
@@ -19,6 +21,9 @@ from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh, read_mesh_parts
 from core.mesh_topology import is_convex, join
+from core.motion.pour.cell import PourCell
+from core.motion.pour.choosing import PourMotions
+from core.motion.pour.planning import judge_pours
 from core.parameters import Parameters, load_preset
 from core.pipeline.jobs import collision_job, quality_job, reconstruction_job
 from core.pipeline.report_content import gather
@@ -83,7 +88,7 @@ class Pipeline:
         self.session = session
         self.parameters = parameters
         self.reporter = _Keeping(reporter)
-        self._pool = pool
+        self.pool = pool
         self._preset = preset
 
     def import_scan(self, folder: Path) -> Scan:
@@ -191,7 +196,7 @@ class Pipeline:
         inputs = self._digests(("collision",))
         if all(self.session.is_fresh(stage, inputs, settings) for stage in ("containability", "pouring")):
             return self._load_imagination()
-        result = imagine(model, self.parameters, self._pool, self.reporter)
+        result = imagine(model, self.parameters, self.pool, self.reporter)
         with self.session.writing(
             "containability", inputs=inputs, parameters=settings, seconds=result.containability_s
         ) as stage:
@@ -204,6 +209,40 @@ class Pipeline:
             if result.grid is not None:
                 result.grid.save(stage)
         return result
+
+    def motion(self, cell: PourCell, described: dict[str, Any]) -> PourMotions | None:
+        """Judge which of the imagined pours the arm of a cell can make, and choose among them.
+
+        Args:
+            cell: the arm and what stands around it.
+            described: the same as plain JSON, for the record.
+
+        Returns:
+            What was found; none if there is no pour to make.
+
+        Raises:
+            MotionError: the arm cannot even take the cup; the sentence says why.
+        """
+        imagination = self.imagination()
+        grid = imagination.grid
+        if grid is None:
+            return None
+
+        def run() -> PourMotions:
+            pouring = self.parameters.pouring
+            pours = judge_pours(
+                cell,
+                imagination.containability.aabb_m,
+                grid.theta_rad,
+                grid.pivot_m,
+                pouring,
+                np.array(cell.home_rad),
+                self.pool,
+                self.reporter,
+            )
+            return PourMotions.of(pours, grid, pouring.cup)
+
+        return self._fresh("motion", ("containability", "pouring"), described, PourMotions.load, run)
 
     def evidence(self) -> Evidence:
         """Render stills and films of what was imagined."""
@@ -218,7 +257,7 @@ class Pipeline:
                 imagination.containability,
                 imagination.grid,
                 imagination.choice,
-                self._pool,
+                self.pool,
                 self.reporter,
             )
 
@@ -239,11 +278,19 @@ class Pipeline:
             self.quality() if is_scan else None,
             self.imagination(),
             evidence,
+            self._known_motions(),
             self.warnings(),
         )
         path = self.session.path / "report.html"
         write_report(content, path)
         return path
+
+    def _known_motions(self) -> PourMotions | None:
+        """What was found for a cell's arm, if it belongs to these pours."""
+        record = self.session.record("motion")
+        if record is None or record.inputs != self._digests(("containability", "pouring")):
+            return None
+        return PourMotions.load(self.session.folder("motion"))
 
     def warnings(self) -> list[str]:
         """Return what the stages wanted the user to know."""
@@ -275,7 +322,7 @@ class Pipeline:
         return result
 
     def _in_worker(self, task: Task, label: str) -> Any:
-        result, warnings = self._pool.run([task], label, self.reporter)[0]
+        result, warnings = self.pool.run([task], label, self.reporter)[0]
         for sentence in warnings:
             self.reporter.warn(sentence)
         return result

@@ -8,11 +8,13 @@ from pathlib import Path
 from core.imagination.imagine import Imagination
 from core.imagination.rendering.evidence import Evidence
 from core.mesh import TriangleMesh
+from core.motion.pour.choosing import PourMotions
 from core.parameters import Parameters
 from core.quality import ScanQuality
 from core.reconstruction import Reconstruction
 from core.report import Media, ReportContent
 from core.session import Session
+from core.session.pour_runs import pour_runs
 
 _THUMBNAIL_PX = (240, 180)
 _CAPTIONS = {
@@ -26,7 +28,17 @@ _CAPTIONS = {
     "drop.mp4": "The drop and the perturbations",
     "pour.mp4": "The chosen pour",
 }
-_STAGES = ("scan", "mesh", "reconstruction", "quality", "collision", "containability", "pouring", "evidence")
+_STAGES = (
+    "scan",
+    "mesh",
+    "reconstruction",
+    "quality",
+    "collision",
+    "containability",
+    "pouring",
+    "motion",
+    "evidence",
+)
 
 
 def gather(
@@ -38,6 +50,7 @@ def gather(
     quality: ScanQuality | None,
     imagination: Imagination,
     evidence: Evidence,
+    motions: PourMotions | None,
     warnings: list[str],
 ) -> ReportContent:
     """Put together everything the report shows."""
@@ -63,6 +76,8 @@ def gather(
         seconds={stage: record.seconds for stage, record in made.items()},
         versions=made["containability"].versions,
         warnings=tuple(warnings),
+        motions=motions,
+        runs=tuple(pour_runs(session.path)),
     )
 
 

@@ -5,6 +5,7 @@ matplotlib and jinja2 are loaded when something is drawn or written, not before.
 
 from core.report.content import Media, ReportContent
 from core.report.footprint import footprint_plot
+from core.report.motions import motion_sentence
 from core.report.page import write_report
 from core.report.pour_map import pour_map
 from core.report.sentences import choice_sentence, pours_sentence, verdict_sentence
@@ -14,6 +15,7 @@ __all__ = [
     "ReportContent",
     "choice_sentence",
     "footprint_plot",
+    "motion_sentence",
     "pour_map",
     "pours_sentence",
     "verdict_sentence",

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
+from core.motion.pour.choosing import PourMotions
 from core.parameters import Parameters
+from core.session.pour_runs import PourRun
 
 if TYPE_CHECKING:  # only its numbers are needed here, not the fusion
     from core.quality import ScanQuality
@@ -41,6 +43,8 @@ class ReportContent:
         seconds: stage to how long it took.
         versions: program to version.
         warnings: sentences the stages gave.
+        motions: which pours an arm can make; None when that was not asked.
+        runs: the pours that an arm made, or began.
     """
 
     name: str
@@ -60,3 +64,5 @@ class ReportContent:
     seconds: Mapping[str, float] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    motions: PourMotions | None = None
+    runs: tuple[PourRun, ...] = ()

@@ -10,6 +10,7 @@ from core.imagination.results import Containability
 from core.report.content import ReportContent
 from core.report.footprint import footprint_plot
 from core.report.media import data_uri, embed_films, embed_pictures
+from core.report.motions import motion_reasons, motion_rows, motion_sentence, run_rows
 from core.report.pour_map import pour_map
 from core.report.sentences import has_spread, omega_texts, pours_sentence, verdict_sentence
 from core.report.tables import (
@@ -76,6 +77,7 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         "total_s": f"{sum(content.seconds.values()):.1f}",
         **_omega_data(found),
         **_pour_data(content),
+        **_motion_data(content),
         **_reconstruction_data(content),
     }
 
@@ -100,6 +102,18 @@ def _pour_data(content: ReportContent) -> dict[str, Any]:
         "pour_rows": pour_rows(grid, content.choice),
         "indents": [f"{indent_m * MM:.0f}" for indent_m in grid.indent_m],
         "spread_said": f"; ± over {grid.n_in.shape[2]} packings of the cup" if has_spread(grid) else "",
+    }
+
+
+def _motion_data(content: ReportContent) -> dict[str, Any]:
+    grid, motions = content.pours, content.motions
+    if grid is None or motions is None:
+        return {"motion_said": None, "run_rows": run_rows(content.runs)}
+    return {
+        "motion_said": motion_sentence(motions, grid),
+        "motion_rows": motion_rows(motions, grid),
+        "motion_reasons": motion_reasons(motions, grid),
+        "run_rows": run_rows(content.runs),
     }
 
 

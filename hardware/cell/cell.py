@@ -11,9 +11,9 @@ from hardware.cameras.openni import OpenNICamera
 from hardware.cameras.realsense import RealSenseCamera
 from hardware.cameras.replay import ReplayCamera
 from hardware.cameras.simulated import SimulatedCamera
+from hardware.cell.arm import real_gripper, real_robot
 from hardware.cell.scene import ARMS, motion_scene
 from hardware.cell.settings import CellSettings, Joints
-from hardware.errors import RobotError
 from hardware.interfaces import Camera, Gripper, Robot
 from hardware.robots.kinematic import KinematicRobot
 from hardware.robots.replay import ReplayRobot
@@ -73,7 +73,6 @@ def open_cell(settings: CellSettings, world: World | None = None, seed: int = 0)
 
     Raises:
         InputError: a simulated cell without a world, or a real one with it.
-        RobotError: there is no driver for the robot.
     """
     if settings.is_simulated != (world is not None):
         raise InputError(
@@ -82,19 +81,23 @@ def open_cell(settings: CellSettings, world: World | None = None, seed: int = 0)
             if settings.is_simulated
             else f"The {settings.name} is real: put the object on its platform and leave out --object."
         )
-    camera, robot = _devices(settings, world, seed)
-    return Cell(settings, camera, robot, SimulatedGripper(), motion_scene(settings))
+    camera, robot, gripper = _devices(settings, world, seed)
+    return Cell(settings, camera, robot, gripper, motion_scene(settings))
 
 
-def _devices(settings: CellSettings, world: World | None, seed: int) -> tuple[Camera, Robot]:
+def _devices(settings: CellSettings, world: World | None, seed: int) -> tuple[Camera, Robot, Gripper]:
     if world is not None:
-        robot = _robot(settings)
+        robot = _twin(settings)
         noise = None if settings.simulation.is_perfect else settings.simulation.noise
-        return SimulatedCamera(world, robot, settings.camera.pose, noise, seed), robot
+        simulated = SimulatedCamera(world, robot, settings.camera.pose, noise, seed)
+        return simulated, robot, SimulatedGripper()
     camera = real_camera(settings)
     if isinstance(camera, ReplayCamera):
-        return camera, ReplayRobot(camera, settings.camera.pose)
-    return camera, _robot(settings)
+        return camera, ReplayRobot(camera, settings.camera.pose), SimulatedGripper()
+    if settings.robot.kind == "ur5":
+        arm = real_robot(settings)
+        return camera, arm, real_gripper(settings, arm)
+    return camera, _twin(settings), SimulatedGripper()
 
 
 def real_camera(settings: CellSettings) -> Camera:
@@ -107,11 +110,8 @@ def real_camera(settings: CellSettings) -> Camera:
     return RealSenseCamera(camera.serial, camera.recording)
 
 
-def _robot(settings: CellSettings) -> Robot:
+def _twin(settings: CellSettings) -> KinematicRobot:
     robot = settings.robot
-    if robot.kind == "ur5":
-        raise RobotError(
-            f"The {robot.model} at {robot.address} cannot be driven by this version; set robot.kind to "
-            "'simulated' to rehearse, or import a scan that was taken with it."
-        )
-    return KinematicRobot(ARMS[robot.model], robot.home_rad, settings.simulation.is_instant)
+    return KinematicRobot(
+        ARMS[robot.model], robot.home_rad, settings.simulation.is_instant, settings.gripper.grasp_pose
+    )

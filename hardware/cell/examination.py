@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import combinations
@@ -13,16 +12,14 @@ from core.errors import PoursightError
 from core.geometry import FloatArray
 from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose
+from hardware.cell.arm import real_robot
 from hardware.cell.cell import open_cell, real_camera
 from hardware.cell.scene import ARMS, motion_scene
 from hardware.cell.settings import CellSettings
+from hardware.errors import RobotError
 from hardware.interfaces import Camera
 from hardware.simulation.world import World
 
-DASHBOARD_PORT = 29999
-UR_GREETING = "Universal Robots"
-UR_PORTS = {DASHBOARD_PORT: "dashboard", 30003: "script", 30004: "data (RTDE)"}
-PROBE_S = 2.0
 SAME_VIEW_M, SAME_VIEW_RAD = 0.03, np.radians(5.0)
 
 
@@ -49,35 +46,14 @@ def _robot(settings: CellSettings) -> Finding:
     robot = settings.robot
     if robot.kind != "ur5":
         return Finding("robot", f"{robot.kind} {robot.model}")
-    address = str(robot.address)
-    subject = f"{robot.model} at {address}"
-    for port, purpose in UR_PORTS.items():
-        try:
-            with socket.create_connection((address, port), PROBE_S) as connection:
-                greeting = _greeting(connection) if port == DASHBOARD_PORT else UR_GREETING
-        except OSError as error:
-            return Finding(
-                "robot",
-                subject,
-                f"Nobody answers on its {purpose} port {port} ({error}); switch the controller on, check the "
-                "address in the cell file and the network cable.",
-            )
-        if UR_GREETING not in greeting:
-            return Finding(
-                "robot",
-                subject,
-                "What answers there is no UR controller; correct the address in the cell file.",
-            )
-    return Finding("robot", f"{subject}, its ports answer")
-
-
-def _greeting(connection: socket.socket) -> str:
-    """The first line of a dashboard server; empty when nothing comes."""
-    connection.settimeout(PROBE_S)
+    subject = f"{robot.model} at {robot.address}"
     try:
-        return connection.recv(200).decode("ascii", errors="replace")
-    except OSError:
-        return ""
+        with real_robot(settings) as arm:
+            state, version = arm.state(), ".".join(map(str, arm.controller_version))
+    except RobotError as error:
+        return Finding("robot", subject, str(error))
+    modes = f"{state.robot_mode.words}, safety {state.safety_mode.words}"
+    return Finding("robot", f"{subject}, controller {version}, {modes}, its kinematics agree")
 
 
 def _camera(settings: CellSettings) -> Finding:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.arm_shape import Capsule, arm_shape, capsule_around_box
 from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
+from core.motion.pour.cell import GRIPPER, PourCell
 from hardware.cell.settings import CellSettings
 
 ARMS: dict[str, ArmModel] = {"UR5": UR5, "UR5e": UR5E}
@@ -18,14 +21,33 @@ of the upper arm."""
 def motion_scene(cell: CellSettings) -> MotionScene:
     """Return arm, tools and obstacles; the object may fill its whole box."""
     arm = ARMS[cell.robot.model]
+    place = cell.place
+    whole_box = axis_aligned_obstacle("object's box", place.crop_min_m, place.crop_max_m)
+    return MotionScene(arm, arm_shape(arm, _tools(cell)), [*_obstacles(cell), whole_box])
+
+
+def pour_cell(cell: CellSettings) -> PourCell:
+    """Return what the planning of a pour must know, without the object: its true size is known by then."""
+    return PourCell(
+        ARMS[cell.robot.model],
+        _tools(cell),
+        tuple(_obstacles(cell)),
+        np.array(cell.robot.home_rad),
+        np.array(cell.place.cup_station_m),
+        cell.gripper.grasp_pose,
+        cell.gripper.grip_height_m,
+        cell.motion,
+    )
+
+
+def _tools(cell: CellSettings) -> tuple[Capsule, ...]:
     gripper, camera = cell.gripper, cell.camera
     # A capsule reaches one radius beyond its segment's end.
     tip_m = max(gripper.length_m - gripper.radius_m, 0.0)
-    tools = [
-        Capsule("gripper", 6, (0.0, 0.0, 0.0), (0.0, 0.0, tip_m), gripper.radius_m),
+    return (
+        Capsule(GRIPPER, 6, (0.0, 0.0, 0.0), (0.0, 0.0, tip_m), gripper.radius_m),
         capsule_around_box("camera", camera.pose, camera.size_m),
-    ]
-    return MotionScene(arm, arm_shape(arm, tools), _obstacles(cell))
+    )
 
 
 def _obstacles(cell: CellSettings) -> list[Obstacle]:
@@ -38,6 +60,5 @@ def _obstacles(cell: CellSettings) -> list[Obstacle]:
             "table", (-reach, -reach, top - _TABLE_DEPTH_M), (reach, reach, top), _STANDS_THERE
         ),
         axis_aligned_obstacle("platform", (*low, top), (*high, place.platform_height_m)),
-        axis_aligned_obstacle("object's box", place.crop_min_m, place.crop_max_m),
         *(axis_aligned_obstacle(box.name, box.min_m, box.max_m) for box in cell.obstacles),
     ]

@@ -136,6 +136,9 @@ class GripperSettings(Group):
         low=0,
         high=1,
     )
+    voltage_v: Literal[12, 24] = choice(
+        24, "ur5: supply of the tool connector, which is set on connecting (afag EU-20: 24 V).", source=_CELL
+    )
     radius_m: float = quantity(
         0.04, "Radius of the capsule it fills.", unit="m", source=_CELL, low=0.005, high=0.3
     )
@@ -265,7 +268,21 @@ class SimulationSettings(Group):
     """What the simulated cell adds to the real one's file."""
 
     is_perfect: bool = choice(False, "No noise, no shadow, no pose error: one switch for all.", source=OURS)
-    is_instant: bool = choice(True, "The arm jumps instead of moving as a real one does.", source=OURS)
+    is_instant: bool = choice(
+        True, "In a scan, the arm jumps instead of moving as a real one does.", source=OURS
+    )
+    speed_up: float = quantity(
+        1.0,
+        "In a pour, how many times faster the simulated controller's clock runs.",
+        unit="",
+        source=OURS,
+        low=1,
+        high=20,
+    )
+    controller_version: Literal["3.15", "5.11"] = choice(
+        "3.15", "In a pour, the simulated controller: 3.15 (CB3, 125 Hz) or 5.11 (e-Series, 500 Hz).",
+        source=OURS,
+    )  # fmt: skip
     noise: DepthNoise = DepthNoise()
 
 

@@ -8,14 +8,18 @@ from threading import RLock
 import numpy as np
 import numpy.typing as npt
 
+from core.geometry import FloatArray
 from core.motion.arm_models import ArmModel
 from core.motion.kinematics import N_JOINTS, flange_pose, within_limits
-from hardware.errors import RobotError, RobotStopped
+from core.motion.trajectory import JointTrajectory
+from hardware.errors import MoveRefused, RobotError, RobotStopped
 from hardware.interfaces import RobotState
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.joint_motion import JointMotion
+from hardware.robots.trajectory_motion import TrajectoryMotion
 
 _POLL_S = 0.004
+_Motion = JointMotion | TrajectoryMotion
 
 
 class KinematicRobot:
@@ -25,19 +29,28 @@ class KinematicRobot:
         name: the model, marked as simulated.
     """
 
-    def __init__(self, arm: ArmModel, joints_rad: npt.ArrayLike, is_instant: bool) -> None:
-        """Stand at `joints_rad` (6,)."""
+    def __init__(
+        self,
+        arm: ArmModel,
+        joints_rad: npt.ArrayLike,
+        is_instant: bool,
+        T_flange_tool: FloatArray | None = None,
+    ) -> None:
+        """Stand at `joints_rad` (6,), with the tool frame `T_flange_tool` (4, 4), by default the flange's."""
         self.name = f"simulated {arm.name}"
         self._arm = arm
         self._is_instant = is_instant
+        self._T_flange_tool = np.eye(4) if T_flange_tool is None else T_flange_tool
+        self._is_stopped = False
         self._lock = RLock()
         self._begin(JointMotion(np.array([joints_rad], dtype=float), 1.0, 1.0))
 
     def __enter__(self) -> KinematicRobot:
+        self._is_stopped = False
         return self
 
     def __exit__(self, *exception: object) -> None:
-        self.stop()
+        self._brake()
 
     def state(self) -> RobotState:
         """Return where the joints are now."""
@@ -46,8 +59,8 @@ class KinematicRobot:
             joints, speeds, _ = self._motion.at(self._elapsed(now_s))
             flange = flange_pose(self._arm, joints)
             return RobotState(
-                joints, joints, speeds, flange, flange, RobotMode.RUNNING, SafetyMode.NORMAL, True,
-                (False, False), 1.0, now_s, now_s,
+                joints, joints, speeds, flange, flange @ self._T_flange_tool, RobotMode.RUNNING,
+                SafetyMode.NORMAL, True, (False, False), 1.0, now_s, now_s,
             )  # fmt: skip
 
     def move_joints(
@@ -58,27 +71,30 @@ class KinematicRobot:
         Raises:
             RobotError: a configuration lies outside the joint limits, or the arm is elsewhere or moving.
         """
-        path = np.array(path_rad, dtype=float)
-        is_path = path.ndim == 2 and len(path) > 0 and path.shape[1] == N_JOINTS
-        if not is_path or not within_limits(self._arm, path).all():
-            raise RobotError(f"The {self.name} cannot take these joint angles; plan the motion anew.")
-        with self._lock:
-            state = self.state()
-            if np.abs(state.joint_speeds_rad_s).max() > 0:
-                raise RobotError(f"The {self.name} is still moving; stop it or wait until it stands.")
-            if np.abs(path[0] - state.joints_rad).max() > 1e-3:
-                raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
-            self._begin(JointMotion(path, speed_rad_s, acceleration_rad_s2))
-            return KinematicMove(self, self._motion)
+        path = self._checked(path_rad)
+        return self._start(JointMotion(path, speed_rad_s, acceleration_rad_s2), path[0])
+
+    def follow(self, trajectory: JointTrajectory) -> KinematicMove:
+        """Start to follow a timed motion of the joints, by the clock.
+
+        Raises:
+            RobotError: as with `move_joints`.
+        """
+        self._checked(trajectory.joints_rad)
+        return self._start(TrajectoryMotion(trajectory), trajectory.start_rad)
 
     def stop(self) -> None:
-        """Slow down and stand."""
+        """Slow down, stand, and refuse further moves until `recover`."""
         with self._lock:
-            elapsed_s = self._elapsed(time.monotonic())
-            if elapsed_s < self._motion.duration_s:
-                self._begin(*self._motion.stopping(elapsed_s))
+            self._is_stopped = True
+            self._brake()
 
-    def progress_of(self, motion: JointMotion) -> float | None:
+    def recover(self) -> None:
+        """Take moves again; what was stopped does not go on."""
+        with self._lock:
+            self._is_stopped = False
+
+    def progress_of(self, motion: _Motion) -> float | None:
         """Return the share of a motion that is done, 0 to 1; none when another one took its place."""
         with self._lock:
             if motion is not self._motion:
@@ -86,7 +102,34 @@ class KinematicRobot:
             done_rad = motion.at(self._elapsed(time.monotonic()))[2]
             return done_rad / motion.length_rad if motion.length_rad else 1.0
 
-    def _begin(self, motion: JointMotion, elapsed_s: float = 0.0) -> None:
+    def _checked(self, joints_rad: npt.ArrayLike) -> FloatArray:
+        path = np.array(joints_rad, dtype=float)
+        is_path = path.ndim == 2 and len(path) > 0 and path.shape[1] == N_JOINTS
+        if not is_path or not within_limits(self._arm, path).all():
+            raise RobotError(f"The {self.name} cannot take these joint angles; plan the motion anew.")
+        return path
+
+    def _start(self, motion: _Motion, start_rad: FloatArray) -> KinematicMove:
+        with self._lock:
+            state = self.state()
+            if self._is_stopped:
+                raise MoveRefused(
+                    f"The {self.name} was stopped; see that all is well, then recover the robot."
+                )
+            if np.abs(state.joint_speeds_rad_s).max() > 0:
+                raise RobotError(f"The {self.name} is still moving; stop it or wait until it stands.")
+            if np.abs(start_rad - state.joints_rad).max() > 1e-3:
+                raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
+            self._begin(motion)
+            return KinematicMove(self, motion)
+
+    def _brake(self) -> None:
+        with self._lock:
+            elapsed_s = self._elapsed(time.monotonic())
+            if elapsed_s < self._motion.duration_s:
+                self._begin(*self._motion.stopping(elapsed_s))
+
+    def _begin(self, motion: _Motion, elapsed_s: float = 0.0) -> None:
         self._motion = motion
         self._start_s = time.monotonic() - elapsed_s
 
@@ -97,7 +140,7 @@ class KinematicRobot:
 class KinematicMove:
     """A motion of the kinematic twin."""
 
-    def __init__(self, robot: KinematicRobot, motion: JointMotion) -> None:
+    def __init__(self, robot: KinematicRobot, motion: _Motion) -> None:
         """Follow `motion`, which the robot has begun."""
         self._robot = robot
         self._motion = motion

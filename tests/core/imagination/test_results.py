@@ -50,6 +50,32 @@ def test_ties_go_to_the_smaller_indent_then_to_the_principal_axis():
     assert (choice.i, choice.j) == (4, 0)
 
 
+def test_among_the_pours_the_arm_can_make_the_same_rule_chooses():
+    counts = np.full((8, 3), 30)
+    counts[5] = [60, 59, 58]
+    counts[2] = [50, 50, 50]
+    all_but_direction_5 = np.ones((8, 3), dtype=bool)
+    all_but_direction_5[5] = False
+    assert choose_pour(grid_of(counts), CUP, np.ones((8, 3), dtype=bool)).i == 5
+    assert choose_pour(grid_of(counts), CUP, all_but_direction_5).i == 2
+    assert choose_pour(grid_of(counts), CUP, np.zeros((8, 3), dtype=bool)) is None
+
+
+def test_a_direction_whose_good_pours_the_arm_cannot_make_does_not_win_by_them():
+    counts = np.full((8, 3), 10)
+    counts[5] = [60, 60, 50]
+    counts[2] = [50, 50, 50]
+    feasible = np.ones((8, 3), dtype=bool)
+    feasible[5, :2] = False
+    choice = choose_pour(grid_of(counts), CUP, feasible)
+    assert (choice.i, choice.j) == (2, 0)
+    feasible[5] = [False, True, False]
+    choice = choose_pour(grid_of(counts), CUP, feasible)
+    assert (choice.i, choice.j) == (5, 1), (
+        "its one feasible pour is as good as its best: its sum still counts"
+    )
+
+
 def test_the_choice_survives_its_table():
     choice = choose_pour(grid_of(np.full((8, 3), 5)), CUP)
     again = type(choice).from_table(choice.to_table())

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from core.motion.arm_models import UR5, UR5E, ArmModel
-from core.motion.inverse_kinematics import configurations, inverse_kinematics
+from core.motion.inverse_kinematics import branch_of, configurations, inverse_kinematics
 from core.motion.kinematics import (
     flange_pose,
     jacobian,
@@ -54,32 +54,15 @@ def test_inverse_contains_the_original_and_every_branch_reaches_the_pose(arm: Ar
     assert branches.found.sum(axis=1).max() == 8
 
 
-def polish(poses: np.ndarray, joints: np.ndarray) -> np.ndarray:
-    """Newton's method from many starts; returns those that arrived, a start a row."""
-    for _ in range(40):
-        T = flange_pose(UR5, joints)
-        R = poses[:, :3, :3] @ np.swapaxes(T[:, :3, :3], 1, 2)
-        turn = (
-            np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], axis=1) / 2
-        )
-        error = np.concatenate([poses[:, :3, 3] - T[:, :3, 3], turn], axis=1)
-        J = jacobian(UR5, joints)
-        damped = np.swapaxes(J, 1, 2) @ J + 1e-8 * np.eye(6)
-        step = np.linalg.solve(damped, np.swapaxes(J, 1, 2) @ error[..., None])[..., 0]
-        joints = joints + step * np.minimum(1, 0.5 / np.maximum(np.abs(step).max(axis=1), 1e-9))[:, None]
-    return joints
-
-
-def test_no_branch_is_missed():
-    n_starts = 150
-    random = np.random.default_rng(3)
-    for joints in random_joints(100, seed=1):
-        pose = flange_pose(UR5, joints)
-        analytic = configurations(UR5, pose)
-        ends = polish(np.tile(pose, (n_starts, 1, 1)), random.uniform(-np.pi, np.pi, (n_starts, 6)))
-        arrived = ends[np.abs(flange_pose(UR5, ends) - pose).max(axis=(1, 2)) < 1e-8]
-        assert len(arrived) > 20
-        assert apart(arrived[:, None], analytic[None]).min(axis=1).max() < 1e-3
+@ARMS
+def test_branch_of_a_configuration_is_the_one_that_finds_it(arm: ArmModel):
+    joints = random_joints(2000)
+    branches = branch_of(arm, joints)
+    found = inverse_kinematics(arm, flange_pose(arm, joints))
+    assert apart(found.joints_rad[np.arange(len(joints)), branches], joints).max() < 1e-6
+    for branch in range(8):
+        alone = inverse_kinematics(arm, flange_pose(arm, joints[:50]), (branch,))
+        assert np.array_equal(alone.joints_rad[:, 0], found.joints_rad[:50, branch])
 
 
 @pytest.mark.filterwarnings("error")

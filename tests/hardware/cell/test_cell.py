@@ -10,8 +10,10 @@ from core.motion.kinematics import flange_pose
 from core.scan.model import RgbdFrame
 from hardware.cell import SIMULATED_CELL, Cell, open_cell, read_cell
 from hardware.cell.scene import ARMS
-from hardware.errors import CameraLost, RobotError
+from hardware.errors import CameraLost
 from hardware.interfaces import CameraImage
+from hardware.robots.simulated_gripper import SimulatedGripper
+from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.placing import world_with
 from hardware.simulation.world import World
@@ -81,9 +83,13 @@ def test_a_simulated_cell_needs_an_object_and_a_real_one_refuses_it(world: World
         open_cell(REAL, world)
 
 
-def test_a_real_arm_is_a_sentence() -> None:
-    with pytest.raises(RobotError, match=r"UR5 at 192\.168\.0\.10 cannot be driven"):
-        open_cell(REAL)
+def test_a_real_cell_has_the_real_arm_and_the_gripper_in_its_hand() -> None:
+    cell = open_cell(REAL)
+    assert isinstance(cell.robot, UR5Robot)
+    assert cell.robot.name == "UR5 at 192.168.0.10"
+    assert cell.gripper.name == "gripper at tool output 0"
+    without = REAL.gripper.model_copy(update={"kind": "simulated"})
+    assert isinstance(open_cell(REAL.model_copy(update={"gripper": without})).gripper, SimulatedGripper)
 
 
 def cell_of(world: World, log: list[str], is_camera_missing: bool) -> Cell:

@@ -1,0 +1,222 @@
+"""`poursight plan` and `poursight pour`: from the imagined pours to candies in the object."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from app.terminal import TerminalReporter
+from core.errors import Cancelled, InputError, MotionError, StageError
+from core.imagination.results import PourGrid
+from core.motion.pour.cell import PourCell
+from core.motion.pour.choosing import PourMotions
+from core.motion.pour.plan import PlannedMove, PourPlan
+from core.motion.pour.planning import plan_pour
+from core.pipeline import Pipeline
+from core.report import motion_sentence, pours_sentence
+from core.session import Session
+from core.session.pour_runs import Outcome, write_outcome
+from hardware.cell import CellSettings, open_arm, read_cell
+from hardware.cell.scene import pour_cell
+from hardware.errors import DeviceError
+from hardware.pouring.pouring import Pouring, PourTarget
+
+if TYPE_CHECKING:
+    from core.imagination.imagine import Imagination
+
+MM = 1000.0
+
+
+@dataclass(frozen=True)
+class PourTask:
+    """What can be poured into the session's object, and in which cell.
+
+    Attributes:
+        settings: the cell.
+        cell: the same as the planner sees it.
+        grid: the imagined pours.
+        motions: which of them the arm can make.
+        target: the chosen one; none if the arm can make none.
+    """
+
+    settings: CellSettings
+    cell: PourCell
+    grid: PourGrid
+    motions: PourMotions
+    target: PourTarget | None
+
+
+def prepare(pipeline: Pipeline, cell_file: Path | None) -> PourTask:
+    """Imagine what is stale and judge which pours the arm can make.
+
+    Raises:
+        StageError: the object is no open container.
+        MotionError: the arm cannot take the cup at all.
+    """
+    settings = _cell_of(pipeline.session, cell_file)
+    cell = pour_cell(settings)
+    imagination = pipeline.imagination()
+    motions = pipeline.motion(cell, _described(settings))
+    if motions is None or imagination.grid is None:
+        said = pours_sentence(imagination.containability, imagination.grid, imagination.choice)
+        raise StageError(f"There is no pour to make. {said}")
+    return PourTask(settings, cell, imagination.grid, motions, _target(pipeline, imagination, motions))
+
+
+def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
+    """Say which pours the arm can make, and what the chosen one looks like from home."""
+    task = prepare(pipeline, cell_file)
+    target = _chosen(task)
+    found = plan_pour(
+        task.cell,
+        target.object_aabb_m,
+        target.i,
+        target.j,
+        target.theta_rad,
+        target.pivot_m,
+        target.pouring,
+        task.cell.home_rad,
+    )
+    print(motion_sentence(task.motions, task.grid))
+    print("\n".join(plan_lines(found)))
+
+
+def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path | None) -> Path:
+    """Plan, ask, pour; after a stop offer to back off and to pour anew. Returns the last run's folder.
+
+    Args:
+        pipeline: of the session.
+        operator: who is asked; none (`--yes`): everything is confirmed, and a stopped run ends the command.
+        cell_file: the cell; none: the one the object was scanned in.
+
+    Raises:
+        PoursightError: the sentence says what is in the way.
+    """
+    task = prepare(pipeline, cell_file)
+    target = _chosen(task)
+    print(motion_sentence(task.motions, task.grid))
+    with open_arm(task.settings) as arm:
+        pouring = Pouring(arm, task.cell, target, pipeline.session.path, pipeline.reporter)
+        while True:
+            fresh = pouring.plan()
+            print("\n".join(plan_lines(fresh.plan)))
+            _confirm(operator, f"Let the {arm.robot.name} pour?")
+            try:
+                folder = pouring.carry_out(fresh)
+                break
+            except (DeviceError, Cancelled) as error:
+                if operator is None or not pouring.is_interrupted:
+                    raise
+                _recover(operator, pouring, error)
+    _keep_outcome(pipeline, operator, task.settings, folder)
+    return folder
+
+
+def plan_lines(plan: PourPlan) -> list[str]:
+    """Return a plan for people: its moves, their times, and what stays free."""
+    lines = [f"The plan, {plan.duration_s:.0f} s:"]
+    lines += [f"  {move.name:<14}{move.trajectory.duration_s:6.1f} s{_grip(move)}" for move in plan.moves]
+    slower_s = plan.turn_s - plan.imagined_turn_s
+    slower = f", {slower_s:.1f} s of it for speeding up" if slower_s > 0.05 else ""
+    lines.append(f"The turn takes {plan.turn_s:.1f} s{slower} (imagined {plan.imagined_turn_s:.1f} s).")
+    lines.append(
+        f"What stays free: {plan.clearance_m * MM:.0f} mm between {plan.nearest[0]} and {plan.nearest[1]}; "
+        f"{plan.cup_clearance_m * MM:.0f} mm around the cup. The pivot stays within "
+        f"{plan.pivot_error_m * MM:.2f} mm."
+    )
+    return lines
+
+
+def _grip(move: PlannedMove) -> str:
+    return "" if move.gripper_after is None else f", then {move.gripper_after} the gripper"
+
+
+def _chosen(task: PourTask) -> PourTarget:
+    if task.target is None:
+        raise MotionError(motion_sentence(task.motions, task.grid))
+    return task.target
+
+
+def _target(pipeline: Pipeline, imagination: Imagination, motions: PourMotions) -> PourTarget | None:
+    choice = motions.choice
+    record = pipeline.session.record("pouring")
+    assert record is not None, "the pours were imagined"
+    if choice is None:
+        return None
+    return PourTarget(
+        imagination.containability.aabb_m,
+        choice.i,
+        choice.j,
+        choice.theta_rad,
+        choice.pivot_m,
+        pipeline.parameters.pouring,
+        record.digest,
+    )
+
+
+def _cell_of(session: Session, cell_file: Path | None) -> CellSettings:
+    """The cell that was named, else the one of the scan, else the simulated one."""
+    if cell_file is not None:
+        return read_cell(cell_file)
+    record = session.record("scan")
+    if record is not None and "cell" in record.parameters:
+        return CellSettings.model_validate(record.parameters["cell"])
+    return read_cell()
+
+
+def _described(settings: CellSettings) -> dict[str, Any]:
+    """What of a cell decides whether a pour can be made."""
+    table: dict[str, Any] = json.loads(
+        settings.model_dump_json(include={"robot", "gripper", "camera", "place", "motion", "obstacles"})
+    )
+    return table
+
+
+def _confirm(operator: TerminalReporter | None, question: str) -> None:
+    if operator is None:
+        return
+    if not sys.stdin.isatty():
+        raise InputError("Nothing moves without a confirmation: run it on a terminal, or add --yes.")
+    if not operator.ask(question):
+        raise Cancelled("Not confirmed; nothing moved.")
+
+
+def _recover(operator: TerminalReporter, pouring: Pouring, error: Exception) -> None:
+    """Step by step, each confirmed: make the arm ready, back off with the cup, then plan anew."""
+    operator.forget_cancel()
+    print(f"Stopped: {error}", file=sys.stderr)
+    _confirm(operator, "Put right what stopped it. Then: make the arm ready again (it does not move)?")
+    while True:
+        try:
+            pouring.recover()
+            break
+        except DeviceError as reason:
+            print(str(reason), file=sys.stderr)
+            _confirm(operator, "Try again?")
+    moves = pouring.plan_back_off()
+    seconds = sum(move.trajectory.duration_s for move in moves)
+    names = ", ".join(move.name for move in moves)
+    _confirm(operator, f"Back off along the checked way ({names}; {seconds:.0f} s)?")
+    pouring.back_off(moves)
+    print("The arm is home. See that the cup stands at its station and is filled.")
+
+
+def _keep_outcome(
+    pipeline: Pipeline, operator: TerminalReporter | None, settings: CellSettings, folder: Path
+) -> None:
+    if settings.is_simulated:
+        from app.outcome import simulated_outcome
+
+        outcome = simulated_outcome(pipeline, settings, folder)
+    elif operator is None:
+        print(f"Count the spilled candies: poursight outcome {pipeline.session.path} --spilled N")
+        return
+    else:
+        n_pour = pipeline.parameters.pouring.n_pour
+        spilled = operator.ask_number("How many candies were spilled (empty: not counted)?")
+        outcome = Outcome(n_pour, spilled, operator.ask_text("Remarks?"), is_simulated=False, facts={})
+    write_outcome(folder, outcome)
+    print(outcome.sentence)

@@ -1,0 +1,82 @@
+"""Which pour to make with this arm: the paper's rule (Sec. III-B) among those that the arm can make."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.files import read_json, write_json
+from core.geometry import BoolArray
+from core.imagination.choice import choose_pour
+from core.imagination.results import PourChoice, PourGrid
+from core.motion.pour.plan import PourFeasibility
+from core.parameters.imagination import CupParameters
+
+MOTION_FILE = "motion.json"
+
+
+@dataclass(frozen=True)
+class PourMotions:
+    """What the arm can make of the imagined pours.
+
+    Attributes:
+        pours: all of them, direction by direction.
+        choice: the one to make; none if the arm can make none.
+        paper_choice: what the paper's rule says of all pours, whether or not the arm can make it.
+    """
+
+    pours: tuple[PourFeasibility, ...]
+    choice: PourChoice | None
+    paper_choice: PourChoice
+
+    @classmethod
+    def of(cls, pours: tuple[PourFeasibility, ...], grid: PourGrid, cup: CupParameters) -> PourMotions:
+        """Choose among the pours that are feasible."""
+        paper_choice = choose_pour(grid, cup)
+        assert paper_choice is not None, "without a mask every pour competes"
+        return cls(pours, choose_pour(grid, cup, _mask(pours, grid)), paper_choice)
+
+    @property
+    def n_feasible(self) -> int:
+        """How many pours the arm can make."""
+        return sum(pour.is_feasible for pour in self.pours)
+
+    @property
+    def is_changed(self) -> bool:
+        """Whether the arm decided, and not the imagination alone."""
+        choice, paper = self.choice, self.paper_choice
+        return choice is None or (choice.i, choice.j) != (paper.i, paper.j)
+
+    def at(self, i: int, j: int) -> PourFeasibility:
+        """Return what was found of one pour."""
+        return next(pour for pour in self.pours if (pour.i, pour.j) == (i, j))
+
+    def save(self, folder: Path) -> None:
+        """Write `motion.json`."""
+        table: dict[str, Any] = {
+            "pours": [asdict(pour) for pour in self.pours],
+            "choice": None if self.choice is None else self.choice.to_table(),
+            "paper_choice": self.paper_choice.to_table(),
+        }
+        write_json(folder / MOTION_FILE, table)
+
+    @classmethod
+    def load(cls, folder: Path) -> PourMotions:
+        """Read what `save` wrote."""
+        table = read_json(folder / MOTION_FILE)
+        choice = table["choice"]
+        return cls(
+            tuple(PourFeasibility(**pour) for pour in table["pours"]),
+            None if choice is None else PourChoice.from_table(choice),
+            PourChoice.from_table(table["paper_choice"]),
+        )
+
+
+def _mask(pours: tuple[PourFeasibility, ...], grid: PourGrid) -> BoolArray:
+    feasible = np.zeros(grid.n_in.shape[:2], dtype=bool)
+    for pour in pours:
+        feasible[pour.i, pour.j] = pour.is_feasible
+    return feasible

@@ -1,0 +1,78 @@
+"""What the arm can make of the pours, and what became of those that it made."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from core.imagination.results import PourChoice, PourGrid
+from core.motion.pour.choosing import PourMotions
+from core.report.sentences import direction_text
+from core.session.pour_runs import PourRun
+
+MM = 1000.0
+
+
+@dataclass(frozen=True)
+class MotionRow:
+    """The three distances of one direction: how long the pour takes and what stays free, or 'no'."""
+
+    direction: str
+    cells: tuple[str, ...]
+    chosen: int | None
+
+
+def motion_sentence(motions: PourMotions, grid: PourGrid) -> str:
+    """Say how many pours the arm can make, and whether that changed the choice and why."""
+    choice, paper = motions.choice, motions.paper_choice
+    n = len(motions.pours)
+    if choice is None:
+        return f"The arm can make none of the {n} pours: {motions.at(paper.i, paper.j).reason}"
+    said = f"The arm can make {motions.n_feasible} of the {n} pours"
+    if not motions.is_changed:
+        return f"{said}, the chosen one among them."
+    return (
+        f"{said}. The best by imagination alone, from {_place(grid, paper)}, is not one of them: "
+        f"{motions.at(paper.i, paper.j).reason} So it pours from {_place(grid, choice)}."
+    )
+
+
+def motion_rows(motions: PourMotions, grid: PourGrid) -> list[MotionRow]:
+    """Return one row a direction."""
+    rows = []
+    for i, theta_rad in enumerate(grid.theta_rad):
+        pours = [motions.at(i, j) for j in range(len(grid.indent_m))]
+        cells = tuple(
+            f"{pour.duration_s:.0f} s, {pour.clearance_m * MM:.0f} mm free" if pour.is_feasible else "no"
+            for pour in pours
+        )
+        chosen = motions.choice.j if motions.choice is not None and motions.choice.i == i else None
+        rows.append(MotionRow(direction_text(float(theta_rad)), cells, chosen))
+    return rows
+
+
+def motion_reasons(motions: PourMotions, grid: PourGrid) -> list[tuple[str, str]]:
+    """Return each reason why pours cannot be made, once, and which pours it holds for."""
+    places: dict[str, list[str]] = {}
+    for pour in motions.pours:
+        if not pour.is_feasible:
+            place = f"{direction_text(float(grid.theta_rad[pour.i]))} at {grid.indent_m[pour.j] * MM:.0f} mm"
+            places.setdefault(pour.reason, []).append(place)
+    return [(", ".join(where), reason) for reason, where in places.items()]
+
+
+def run_rows(runs: Sequence[PourRun]) -> list[tuple[str, str, str]]:
+    """Return (time, how it ended, what was spilled) of each run."""
+    return [
+        (_clock(run.begun), run.sentence, run.outcome.sentence if run.outcome else "Not entered yet.")
+        for run in runs
+    ]
+
+
+def _place(grid: PourGrid, choice: PourChoice) -> str:
+    return f"{direction_text(choice.theta_rad)} at {grid.indent_m[choice.j] * MM:.0f} mm"
+
+
+def _clock(time: str) -> str:
+    return datetime.fromisoformat(time).strftime("%d %B %Y, %H:%M:%S UTC") if time else ""

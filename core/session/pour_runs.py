@@ -1,0 +1,134 @@
+"""The runs of real or rehearsed pours that a session holds: `pours/0001`, `pours/0002` and so on.
+
+A run is no stage: it is written line by line while it happens, so that a crash loses nothing that happened.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from typing import Any
+
+from core.files import read_json, write_json
+from core.session.explaining import explained
+
+RUNS_FOLDER = "pours"
+EVENTS_FILE, STATES_FILE, OUTCOME_FILE = "events.jsonl", "states.csv", "outcome.json"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a run's candies.
+
+    Attributes:
+        n_candies: in the cup before; none if nobody counted.
+        n_spilled: beside the object; none if nobody counted.
+        remarks: in the words of who saw it.
+        is_simulated: whether physics told, and nobody saw it.
+        facts: more numbers, as plain JSON.
+    """
+
+    n_candies: int | None
+    n_spilled: int | None
+    remarks: str
+    is_simulated: bool
+    facts: dict[str, Any]
+
+    @property
+    def sentence(self) -> str:
+        """For people."""
+        if self.n_spilled is None:
+            said = "Nobody counted what was spilled."
+        else:
+            of = f" of {self.n_candies}" if self.n_candies is not None else ""
+            said = f"{self.n_spilled}{of} candies were spilled."
+        origin = " (simulated: by physics of its own, over the true object)" if self.is_simulated else ""
+        return f"{said[:-1]}{origin}." + (f" {self.remarks}" if self.remarks else "")
+
+
+@dataclass(frozen=True)
+class PourRun:
+    """One run, as its folder tells it.
+
+    Attributes:
+        folder: that holds it.
+        events: what happened, in its order.
+        outcome: what became of the candies; none as long as nobody entered it.
+    """
+
+    folder: Path
+    events: tuple[dict[str, Any], ...]
+    outcome: Outcome | None
+
+    @classmethod
+    def load(cls, folder: Path) -> PourRun:
+        """Read a run's folder."""
+        path = folder / OUTCOME_FILE
+        outcome = None
+        if path.is_file():
+            table = read_json(path)
+            table.pop("entered", None)
+            outcome = Outcome(**table)
+        return cls(folder, tuple(_read_events(folder / EVENTS_FILE)), outcome)
+
+    @property
+    def begun(self) -> str:
+        """ISO 8601 time, UTC, of its first event; empty if there is none."""
+        return str(self.events[0]["time"]) if self.events else ""
+
+    @property
+    def is_done(self) -> bool:
+        """Whether every move was made."""
+        return any(event["kind"] == "done" for event in self.events)
+
+    @property
+    def sentence(self) -> str:
+        """How it ended, for people."""
+        if self.is_done:
+            return "The pour was made."
+        stops = [event for event in self.events if event["kind"] == "stopped"]
+        if not stops:
+            return "The run ended without a word: the program was ended while the arm moved."
+        during = [event["name"] for event in self.events if event["kind"] == "move"]
+        where = f" during '{during[-1]}'" if during else " before the first move"
+        return f"Stopped{where}: {stops[-1]['sentence']}"
+
+
+def pour_runs(session: Path) -> list[PourRun]:
+    """Return a session's runs, the oldest first."""
+    return [PourRun.load(folder) for folder in _run_folders(session)]
+
+
+def next_run_folder(session: Path) -> Path:
+    """Return the folder for a new run of a session; it is not made."""
+    folders = _run_folders(session)
+    number = int(folders[-1].name) + 1 if folders else 1
+    return session / RUNS_FOLDER / f"{number:04d}"
+
+
+def write_outcome(folder: Path, outcome: Outcome) -> None:
+    """Keep what became of a run's candies.
+
+    Raises:
+        SessionError: the folder cannot be written.
+    """
+    entered = datetime.now(timezone.utc).isoformat(timespec="seconds")
+    with explained(folder):
+        write_json(folder / OUTCOME_FILE, vars(outcome) | {"entered": entered})
+
+
+def _run_folders(session: Path) -> list[Path]:
+    return sorted(path for path in (session / RUNS_FOLDER).glob("[0-9]*") if path.name.isdigit())
+
+
+def _read_events(path: Path) -> list[dict[str, Any]]:
+    """Read what was written; a last line that a crash cut short is left out."""
+    events: list[dict[str, Any]] = []
+    for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else []:
+        try:
+            events.append(json.loads(line))
+        except ValueError:
+            break
+    return events

@@ -1,0 +1,126 @@
+"""What happened during one pour, on the disk as it happens: a run is told from it even after a crash."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Collection
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+import numpy as np
+
+from core.geometry import FloatArray
+from core.session import explained
+from core.session.pour_runs import EVENTS_FILE, STATES_FILE
+from hardware.interfaces import RobotState
+
+STATE_EVERY_S = 0.039
+"""25 states a second, by the controller's clock, whose cycles of 8 ms rounding must not make 48."""
+_COLUMNS = (
+    "time_s",
+    "move",
+    *(f"joint_{k}_rad" for k in range(1, 7)),
+    *(f"target_{k}_rad" for k in range(1, 7)),
+    *(f"speed_{k}_rad_s" for k in range(1, 7)),
+    "tool_x_m",
+    "tool_y_m",
+    "tool_z_m",
+    "robot_mode",
+    "safety_mode",
+    "program_running",
+    "output_0",
+    "output_1",
+    "speed_scaling",
+)
+
+
+class RunLog:
+    """Writes events (one JSON a line) and states (CSV) of one run into its folder.
+
+    Attributes:
+        folder: of the run.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        """Begin in a folder, which is made.
+
+        Raises:
+            SessionError: it cannot be written.
+        """
+        self.folder = folder
+        self._last_state_s = float("-inf")
+        with explained(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+            self._events: TextIO = (folder / EVENTS_FILE).open("a", encoding="utf-8")
+            self._states: TextIO = (folder / STATES_FILE).open("a", encoding="utf-8", newline="")
+            self._table = csv.writer(self._states)
+            if self._states.tell() == 0:
+                self._table.writerow(_COLUMNS)
+
+    def __enter__(self) -> RunLog:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._events.close()
+        self._states.close()
+
+    def event(self, kind: str, sentence: str, **facts: Any) -> None:
+        """Note that something happened; it is on the disk when this returns.
+
+        Args:
+            kind: in a word, such as "move" or "stopped".
+            sentence: for people.
+            facts: plain JSON values.
+        """
+        now = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
+        line = json.dumps({"time": now, "kind": kind, "sentence": sentence, **facts})
+        with explained(self.folder):
+            self._events.write(line + "\n")
+            self._events.flush()
+
+    def state(self, move: str, state: RobotState) -> None:
+        """Note a state of the robot, if the last one noted is old enough by the controller's clock."""
+        if state.controller_s - self._last_state_s < STATE_EVERY_S:
+            return
+        self._last_state_s = state.controller_s
+        numbers = (*state.joints_rad, *state.target_joints_rad, *state.joint_speeds_rad_s)
+        row = (
+            f"{state.controller_s:.4f}",
+            move,
+            *(f"{number:.6f}" for number in (*numbers, *state.T_base_tool[:3, 3])),
+            int(state.robot_mode),
+            int(state.safety_mode),
+            int(state.is_program_running),
+            *map(int, state.tool_outputs),
+            f"{state.speed_scaling:.3f}",
+        )
+        with explained(self.folder):
+            self._table.writerow(row)
+            self._states.flush()
+
+
+@dataclass(frozen=True)
+class DrivenStates:
+    """Where the controller said the joints were.
+
+    Attributes:
+        times_s: (N,) by the controller's clock.
+        joints_rad: (N, 6).
+    """
+
+    times_s: FloatArray
+    joints_rad: FloatArray
+
+
+def read_states(folder: Path, moves: Collection[str]) -> DrivenStates:
+    """Read the states of a run that were noted during moves of these names."""
+    with (folder / STATES_FILE).open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if row["move"] in moves]
+    joints = [[float(row[f"joint_{k}_rad"]) for k in range(1, 7)] for row in rows]
+    return DrivenStates(np.array([float(row["time_s"]) for row in rows]), np.array(joints).reshape(-1, 6))

@@ -1,0 +1,71 @@
+"""Is there a UR controller at an address? Asked before anything is built on it: ur_rtde waits for ever."""
+
+from __future__ import annotations
+
+import socket
+import struct
+import time
+
+from hardware.errors import RobotUnreachable
+
+DASHBOARD_PORT = 29999
+SCRIPT_PORT = 30003
+DATA_PORT = 30004
+UR_GREETING = "Universal Robots"
+PROBE_S = 3.0
+"""For all ports together."""
+
+_PURPOSES = {DASHBOARD_PORT: "dashboard", SCRIPT_PORT: "script", DATA_PORT: "data (RTDE)"}
+_ASK_PROTOCOL_2 = struct.pack(">HBH", 5, ord("V"), 2)
+_ACCEPTS_PROTOCOL_2 = struct.pack(">HBB", 4, ord("V"), 1)
+
+
+def probe(address: str) -> None:
+    """Check that a UR controller answers on each of its ports.
+
+    Raises:
+        RobotUnreachable: nobody answers, or somebody else, within `PROBE_S`.
+    """
+    deadline_s = time.monotonic() + PROBE_S
+    for port, purpose in _PURPOSES.items():
+        try:
+            with socket.create_connection((address, port), _left_s(deadline_s)) as connection:
+                is_controller = _answers_as_controller(connection, port, deadline_s)
+        except (OSError, UnicodeError) as error:  # a name that is none fails in its encoding
+            raise RobotUnreachable(
+                f"Nobody answers at {address} on its {purpose} port {port} ({error}); switch the controller "
+                "on, check the address in the cell file and the network cable."
+            ) from error
+        if not is_controller:
+            raise RobotUnreachable(
+                f"What answers at {address} on port {port} is no UR controller; correct the address in the "
+                "cell file."
+            )
+
+
+def _answers_as_controller(connection: socket.socket, port: int, deadline_s: float) -> bool:
+    if port == DASHBOARD_PORT:
+        return UR_GREETING.encode() in _receive(connection, len(UR_GREETING), deadline_s)
+    if port == DATA_PORT:
+        connection.sendall(_ASK_PROTOCOL_2)
+        return _receive(connection, len(_ACCEPTS_PROTOCOL_2), deadline_s) == _ACCEPTS_PROTOCOL_2
+    return True
+
+
+def _receive(connection: socket.socket, at_least: int, deadline_s: float) -> bytes:
+    """What comes until the deadline; empty or short when nothing does."""
+    received = b""
+    while len(received) < at_least:
+        connection.settimeout(_left_s(deadline_s))
+        try:
+            part = connection.recv(200)
+        except OSError:
+            break
+        if not part:
+            break
+        received += part
+    return received
+
+
+def _left_s(deadline_s: float) -> float:
+    return max(deadline_s - time.monotonic(), 0.05)

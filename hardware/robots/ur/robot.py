@@ -1,0 +1,347 @@
+"""The real arm, behind the robot interface."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from math import radians
+from threading import Lock
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry import AnyArray, FloatArray
+from core.motion.arm_models import ArmModel
+from core.motion.kinematics import N_JOINTS, within_limits
+from core.motion.trajectory import JointTrajectory
+from hardware.errors import (
+    MoveRefused,
+    NotInRemoteControl,
+    ProgramStopped,
+    RobotError,
+    RobotLost,
+    RobotStopped,
+)
+from hardware.interfaces import RobotState
+from hardware.robots.ur.dashboard import Dashboard
+from hardware.robots.ur.identity import refuse_local_control, refuse_other_kinematics, refuse_other_model
+from hardware.robots.ur.link import WorkerLink
+from hardware.robots.ur.mailbox import RUNTIME_PLAYING
+from hardware.robots.ur.messages import Ended, Setup
+from hardware.robots.ur.motions import ARRIVED_RAD
+from hardware.robots.ur.move import UrMove
+from hardware.robots.ur.probe import probe
+from hardware.robots.ur.recovery import make_ready
+from hardware.robots.ur.script_port import set_tool_voltage
+from hardware.robots.ur.state import robot_state, tool_vector
+from hardware.robots.ur.watching import unsafe
+
+STOP_ANSWER_S = 0.1
+"""A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
+_CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
+_STANDS_WITHIN_S = 0.3
+_STANDING_RAD_S = 0.01
+_DASHBOARD_STOP_S = 0.3
+_OUTPUT_WITHIN_S = 0.5
+_POLL_S = 0.004
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class _Connection:
+    dashboard: Dashboard
+    worker: WorkerLink
+
+
+class UR5Robot:
+    """A UR5 or UR5e with a CB3 or e-Series controller, driven through ur_rtde in a worker process.
+
+    A software stop is not a safety-rated one: the emergency stop is the button on the panel.
+
+    Attributes:
+        name: model and address, or as given.
+        controller_version: of the controller's software, such as (3, 15); empty before it was connected.
+    """
+
+    def __init__(
+        self,
+        arm: ArmModel,
+        address: str,
+        T_flange_tool: FloatArray,
+        payload_kg: float,
+        payload_center_m: Sequence[float],
+        tool_voltage_v: int | None = None,
+        tolerance_m: float = 0.005,
+        tolerance_rad: float = radians(1),
+        name: str | None = None,
+    ) -> None:
+        """Know what to connect to; entering connects.
+
+        Args:
+            arm: the model that the cell file names.
+            address: the controller's, an IP address or a host's name.
+            T_flange_tool: (4, 4) the tool frame that is set on the controller.
+            payload_kg: mass at the flange, set on the controller.
+            payload_center_m: (3,) its centre in the flange's frame.
+            tool_voltage_v: supply of the tool connector to be set; none: as set on the panel.
+            tolerance_m: how far the reported tool may be from where the model's kinematics put it.
+            tolerance_rad: how far it may be turned.
+            name: what people call it; model and address without one.
+        """
+        self.name = name or f"{arm.name} at {address}"
+        self.controller_version: tuple[int, ...] = ()
+        self._arm = arm
+        self._T_flange_tool = T_flange_tool
+        self._tool_voltage_v = tool_voltage_v
+        self._tolerances = tolerance_m, tolerance_rad
+        self._address = address
+        self._payload = float(payload_kg), [float(x) for x in payload_center_m]
+        self._connection: _Connection | None = None
+        self._move: UrMove | None = None
+        self._refusal: RobotError | None = None
+        self._command_lock = Lock()
+
+    def __enter__(self) -> UR5Robot:
+        """Connect, and check that it is the arm of the cell file and that it is ready.
+
+        Raises:
+            RobotUnreachable: nobody answers, or somebody else; known within 5 s.
+            WrongRobot: it is another arm.
+            NotInRemoteControl: only its panel moves it.
+            RobotNotReady: its power is off, its brakes hold, or another program drives it.
+            RobotError: a protective or emergency stop holds it.
+        """
+        with self._command_lock:
+            self._refusal = None
+            self._connect()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        """Stop what moves; leave no process and no thread."""
+        if self._move is not None and not self._move.is_done:
+            with suppress(RobotError):
+                self.stop()
+        with self._command_lock:
+            self._disconnect()
+
+    def state(self) -> RobotState:
+        """Return the newest state.
+
+        Raises:
+            RobotLost: it is older than `link.LOST_S`, or the robot is not connected.
+        """
+        return robot_state(self._connected().worker.state(), self._arm)
+
+    def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> UrMove:
+        """Start to move through joint configurations (N, 6), the first being where the arm stands.
+
+        Raises:
+            RobotError: the path is none, the arm is elsewhere, moving or not ready, was stopped and not
+                recovered, or cannot be reached.
+        """
+        path = self._checked(path_rad)
+        return self._start("move_joints", path, float(speed_rad_s), float(acceleration_rad_s2), start=path[0])
+
+    def follow(self, trajectory: JointTrajectory) -> UrMove:
+        """Start to follow a timed motion of the joints, at the pace of the controller's clock.
+
+        Raises:
+            RobotError: as with `move_joints`.
+        """
+        self._checked(trajectory.joints_rad)
+        return self._start("follow", trajectory, start=trajectory.start_rad)
+
+    def stop(self) -> None:
+        """Stop what moves and refuse further moves until `recover`; returns when the arm stands.
+
+        Works from any thread. A driver that does not answer within `STOP_ANSWER_S`, or an arm that does not
+        come to a stand, is stopped through the dashboard, and a warning in the log says so.
+
+        Raises:
+            RobotLost: no way to the controller is left.
+        """
+        stopped = RobotStopped(f"The {self.name} was stopped; see that all is well, then recover the robot.")
+        self._refusal = self._refusal or stopped
+        connection = self._connected()
+        try:
+            connection.worker.ask("stop", within_s=STOP_ANSWER_S)
+            if self._comes_to_rest(connection.worker):
+                return
+            why = "it did not come to a stand"
+        except RobotError as error:
+            why = str(error)
+        _log.warning("The %s was stopped through its dashboard: %s", self.name, why)
+        try:
+            connection.dashboard.stop(_DASHBOARD_STOP_S)
+        except RobotLost as error:
+            raise RobotLost(
+                f"The {self.name} cannot be told to stop ({error}); press the emergency stop if it moves."
+            ) from error
+        if self._move is not None:
+            self._move.end(stopped)
+
+    def recover(self) -> None:
+        """Bring the robot back to where it takes moves, with a new worker; nothing goes on.
+
+        Raises:
+            EmergencyStop: it is still pressed.
+            NotInRemoteControl: only its panel moves it.
+            RobotError: something else has to be done by a person first; the sentence says what.
+        """
+        with self._command_lock:
+            self._disconnect()
+            # Not later: a stop that comes meanwhile has to be recovered from anew. Not earlier: the old
+            # worker's last word may come until it is gone.
+            self._refusal = None
+            probe(self._address)
+            dashboard = Dashboard(self._address)
+            try:
+                refuse_local_control(dashboard, self.name)
+                make_ready(dashboard, self.name)
+            finally:
+                dashboard.close()
+            self._connect()
+
+    def set_tool_output(self, output: int, value: bool) -> None:
+        """Set a digital output of the tool (0 or 1) and see that it is set.
+
+        Measured with ur_rtde 1.6.5: the first write after a lost link is lost without a word. So the output
+        is read back, and written once more if need be.
+
+        Raises:
+            MoveRefused: it does not change.
+            RobotError: the robot cannot be reached.
+        """
+        worker = self._connected().worker
+        for _ in range(2):
+            worker.ask("set_tool_output", output, value)
+            deadline_s = time.monotonic() + _OUTPUT_WITHIN_S
+            while time.monotonic() < deadline_s:
+                if self.state().tool_outputs[output] == value:
+                    return
+                time.sleep(_POLL_S)
+        raise MoveRefused(
+            f"Tool output {output} of the {self.name} did not change; see under I/O on its panel whether "
+            "something else sets it."
+        )
+
+    def _connect(self) -> None:
+        probe(self._address)
+        dashboard = Dashboard(self._address)
+        try:
+            refuse_local_control(dashboard, self.name)
+            refuse_other_model(dashboard, self._arm, self.name)
+            if self._tool_voltage_v is not None:
+                set_tool_voltage(self._address, self._tool_voltage_v)
+            self.controller_version = dashboard.version()
+            cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
+            setup = Setup(self._address, tool_vector(self._T_flange_tool), *self._payload, cycle_s)
+            worker = WorkerLink(setup, self._on_ended, self._on_lost)
+            try:
+                refuse_other_kinematics(worker.state(), self._arm, self._T_flange_tool, *self._tolerances)
+            except BaseException:
+                worker.end()
+                raise
+        except BaseException:
+            dashboard.close()
+            raise
+        self._move = None
+        self._connection = _Connection(dashboard, worker)
+
+    def _disconnect(self) -> None:
+        connection, self._connection = self._connection, None
+        if connection is not None:
+            connection.worker.end()
+            connection.dashboard.close()
+        if self._move is not None:
+            self._move.end(RobotStopped(f"The {self.name} was let go; plan its motion anew."))
+
+    def _connected(self) -> _Connection:
+        if self._connection is None:
+            raise RobotLost(f"The {self.name} is not connected; recover the robot.")
+        return self._connection
+
+    def _checked(self, joints_rad: npt.ArrayLike) -> FloatArray:
+        path = np.array(joints_rad, dtype=float)
+        is_path = path.ndim == 2 and len(path) > 0 and path.shape[1] == N_JOINTS
+        if not is_path or not within_limits(self._arm, path).all():
+            raise RobotError(f"The {self.name} cannot take these joint angles; plan the motion anew.")
+        return path
+
+    def _start(self, request: str, *arguments: Any, start: FloatArray) -> UrMove:
+        """Hand a motion to the worker if the arm is ready and stands where it begins."""
+        with self._command_lock:
+            worker = self._connected().worker
+            if self._refusal is not None:
+                raise self._refusal
+            self._refuse_unready(worker.state(), start)
+            move = self._move = UrMove(self.name, lambda: _progress(worker), self.stop)
+            try:
+                worker.ask(request, *arguments)
+            except RobotError as error:
+                move.end(error)
+                raise self._refusal or error from error
+            return move
+
+    def _refuse_unready(self, raw: AnyArray, start_rad: FloatArray) -> None:
+        error = unsafe(raw)
+        if error is not None:
+            raise error
+        if int(raw["runtime_state"]) != RUNTIME_PLAYING:
+            raise ProgramStopped(
+                f"The control program on the {self.name} does not run any more; recover the robot."
+            )
+        is_moving = self._move is not None and not self._move.is_done
+        if is_moving or np.abs(raw["joint_speeds_rad_s"]).max() > _STANDING_RAD_S:
+            raise RobotError(f"The {self.name} is still moving; stop it or wait until it stands.")
+        if np.abs(start_rad - raw["joints_rad"]).max() > ARRIVED_RAD:
+            raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
+
+    def _on_ended(self, ended: Ended) -> None:
+        """A move is over. One that went wrong takes the control program with it, lest anything goes on."""
+        move, error = self._move, ended.error
+        if error is not None and type(error) is not RobotStopped:
+            error = self._end_program(error)
+        self._refusal = self._refusal or error
+        if move is not None:
+            move.end(error, ended.progress)
+
+    def _on_lost(self, error: RobotLost) -> None:
+        self._refusal = error
+        if self._move is not None:
+            self._move.end(error)
+        self._end_program(error)
+
+    def _end_program(self, error: RobotError) -> RobotError:
+        """End the program through the dashboard and return the error, more exact where it can be told."""
+        connection = self._connection
+        if connection is None:
+            return error
+        try:
+            connection.dashboard.stop(_DASHBOARD_STOP_S)
+            if isinstance(error, ProgramStopped):
+                refuse_local_control(connection.dashboard, self.name)
+        except NotInRemoteControl as local:
+            return local
+        except RobotLost:
+            pass  # The watchdog ends the program.
+        return error
+
+    def _comes_to_rest(self, worker: WorkerLink) -> bool:
+        deadline_s = time.monotonic() + _STANDS_WITHIN_S
+        while np.abs(worker.state()["joint_speeds_rad_s"]).max() > _STANDING_RAD_S:
+            if time.monotonic() > deadline_s:
+                return False
+            time.sleep(_POLL_S)
+        return True
+
+
+def _progress(worker: WorkerLink) -> float:
+    with suppress(RobotLost):
+        return float(worker.state()["progress"])
+    return 0.0

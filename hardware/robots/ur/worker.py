@@ -1,0 +1,291 @@
+"""The worker process: the only place that knows ur_rtde, whose faults end this process and no other.
+
+Measured with ur_rtde 1.6.5: constructors against a silent server hang for ever and hold the interpreter's
+lock, destructors after a lost link crash, blocking moves cannot be stopped, and two threads that call one
+control object get each other's answers. So here one thread makes all control calls, all of them asynchronous,
+another one reads states, the process ends without destructors, and its parent ends it when it says nothing.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from multiprocessing.connection import wait as wait_for_handles
+from threading import Event, Thread
+from typing import NoReturn
+
+import numpy as np
+import rtde_control
+import rtde_io
+import rtde_receive
+
+from core.geometry import AnyArray, FloatArray
+from core.motion.trajectory import JointTrajectory
+from hardware.errors import (
+    DeviceError,
+    MoveRefused,
+    NotInRemoteControl,
+    ProgramStopped,
+    RobotError,
+    RobotNotReady,
+    RobotStopped,
+    RobotUnreachable,
+)
+from hardware.robots.ur.mailbox import FIELDS, RUNTIME_PLAYING, StateMailbox
+from hardware.robots.ur.messages import Connected, Ended, Reply, Request, Setup, Started
+from hardware.robots.ur.motions import Following, JointMoves, Motion
+from hardware.robots.ur.watching import deviation, unsafe
+
+_HANGS_S = 12
+"""Later than the parent, which ends a worker that does not connect in time; this is for when it is gone."""
+WATCHDOG_HZ = 3.5
+"""Without a word for this time's inverse the controller ends the program, and the arm brakes and stands."""
+_KICK_S = 0.04
+_IDLE_S = 0.01
+_BRAKE_WITHIN_S = 0.12
+_BRAKE_LIMITS_RAD_S2 = 5.0, 30.0
+_REASON_S = 0.06
+"""The safety system's word may come some cycles after the program has ended because of it."""
+_TAKEN_S = 1.0
+_SAME = 1e-4
+
+
+def serve(setup: Setup, connection: Connection, mailbox: StateMailbox) -> NoReturn:
+    """Connect, tell the parent, and do what it asks until it asks to end or is gone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # A constructor that hangs keeps Python from running at all; this signal ends the process all the same.
+    signal.alarm(_HANGS_S)
+    _be_quiet()
+    Thread(target=_end_with_parent, daemon=True).start()
+    connection.send(Started())
+    try:
+        worker = _Worker(setup, connection, mailbox)
+    except RobotError as error:
+        connection.send(Connected(error))
+        os._exit(1)
+    signal.alarm(0)
+    connection.send(Connected(None))
+    try:
+        worker.run()
+    finally:
+        os._exit(0)
+
+
+class _Worker:
+    """One thread reads states, the other one, in `run`, makes all control calls."""
+
+    def __init__(self, setup: Setup, connection: Connection, mailbox: StateMailbox) -> None:
+        self._connection = connection
+        self._mailbox = mailbox
+        self._cycle_s = setup.cycle_s
+        self._motion: Motion | None = None
+        self._is_over = False
+        self._fresh = Event()
+        self._kicked_s = 0.0
+        try:
+            self._receive = rtde_receive.RTDEReceiveInterface(setup.address)
+            self._latest = self._read()
+            _refuse(unsafe(self._latest))
+            self._control = rtde_control.RTDEControlInterface(setup.address)
+            self._io = rtde_io.RTDEIOInterface(setup.address)
+            self._set_up(setup)
+        except RuntimeError as error:
+            raise _explain(error, setup.address) from error
+
+    def run(self) -> NoReturn:
+        """Serve requests and move, until the parent is gone."""
+        Thread(target=self._publish, daemon=True).start()
+        while True:
+            is_fresh = self._fresh.wait(_IDLE_S)
+            self._fresh.clear()
+            while self._connection.poll():
+                self._serve(self._connection.recv())
+            if is_fresh and self._motion is not None:
+                self._step(self._motion)
+            self._kick()
+
+    def _set_up(self, setup: Setup) -> None:
+        """Set tool and payload, and read them back: what the controller takes for granted must be ours."""
+        center = setup.payload_center_m
+        is_set = self._control.setTcp(setup.tool) and self._control.setPayload(setup.payload_kg, center)
+        if not is_set or np.abs(np.subtract(self._control.getTCPOffset(), setup.tool)).max() > _SAME:
+            raise MoveRefused(
+                "The controller did not take the tool's pose and payload; see what its panel shows, then "
+                "recover the robot."
+            )
+        deadline_s = time.monotonic() + _TAKEN_S
+        while abs(self._receive.getPayload() - setup.payload_kg) > _SAME:
+            if time.monotonic() > deadline_s:
+                raise MoveRefused(
+                    f"The controller reports a payload of {self._receive.getPayload():g} kg in place of "
+                    f"{setup.payload_kg:g} kg; see what its panel shows, then recover the robot."
+                )
+            time.sleep(_IDLE_S)
+        self._control.setWatchdog(WATCHDOG_HZ)
+
+    def _serve(self, request: Request) -> None:
+        if request.name in ("stop", "end"):
+            self._stop(request)
+            return
+        error: RobotError | None = None
+        try:
+            getattr(self, f"_ask_{request.name}")(*request.arguments)
+        except RobotError as refused:
+            error = refused
+        except RuntimeError as failed:
+            error = MoveRefused(f"The controller did not take it ({failed}); recover the robot.")
+        self._connection.send(Reply(request.number, error))
+
+    def _ask_move_joints(self, path_rad: FloatArray, speed_rad_s: float, acceleration_rad_s2: float) -> None:
+        self._begin(JointMoves(self._control, path_rad, speed_rad_s, acceleration_rad_s2))
+
+    def _ask_follow(self, trajectory: JointTrajectory) -> None:
+        self._begin(Following(self._control, trajectory, self._cycle_s))
+
+    def _ask_set_tool_output(self, output: int, value: bool) -> None:
+        if not self._io.setToolDigitalOut(output, value):
+            raise MoveRefused(f"The controller did not take tool output {output}; recover the robot.")
+
+    def _begin(self, motion: Motion) -> None:
+        if self._is_over:
+            raise MoveRefused("The arm was stopped; recover the robot first.")
+        if self._motion is not None:
+            raise MoveRefused("The arm is still moving; stop it or wait until it stands.")
+        self._motion = motion
+
+    def _stop(self, request: Request) -> None:
+        """Stop for good: only a new worker moves again, so no request on its way can begin a move later."""
+        self._is_over = True
+        self._connection.send(Reply(request.number, None))
+        motion, self._motion = self._motion, None
+        if motion is not None:
+            self._brake(motion)
+            stopped = RobotStopped("The arm was stopped on its way; plan its motion anew.")
+            self._connection.send(Ended(stopped, motion.progress))
+        if request.name == "end":
+            self._control.stopScript()
+            os._exit(0)
+
+    def _step(self, motion: Motion) -> None:
+        """Go on with the motion; whatever is wrong with it ends it."""
+        error: RobotError | None = None
+        try:
+            is_done = motion.step(self._latest)
+            if motion.is_streaming:
+                self._kicked_s = time.monotonic()
+            if not is_done:
+                return
+        except RobotError as wrong:
+            error = wrong
+        except RuntimeError as failed:
+            error = MoveRefused(f"The controller refused ({failed}); recover the robot and plan anew.")
+        self._motion = None
+        if error is not None:
+            self._is_over = True
+            self._brake(motion)
+            error = self._reason(error)
+        self._connection.send(Ended(error, motion.progress))
+
+    def _brake(self, motion: Motion) -> None:
+        fastest_rad_s = float(np.abs(self._latest["joint_speeds_rad_s"]).max())
+        # The parent sees an arm that does not stand, and ends the program through the dashboard.
+        with suppress(RuntimeError):
+            motion.stop(float(np.clip(fastest_rad_s / _BRAKE_WITHIN_S, *_BRAKE_LIMITS_RAD_S2)))
+
+    def _reason(self, error: RobotError) -> RobotError:
+        """The gravest thing to be seen just after something went wrong."""
+        deadline_s = time.monotonic() + _REASON_S
+        while time.monotonic() < deadline_s:
+            graver = unsafe(self._latest)
+            if graver is not None:
+                return graver
+            also = deviation(self._latest)
+            if isinstance(also, ProgramStopped):
+                error = also
+            self._kick()
+            time.sleep(_IDLE_S)
+        return error
+
+    def _kick(self) -> None:
+        """Tell the controller that we are there; a stopped program does not listen."""
+        now_s = time.monotonic()
+        if now_s - self._kicked_s > _KICK_S and int(self._latest["runtime_state"]) == RUNTIME_PLAYING:
+            self._kicked_s = now_s
+            self._control.kickWatchdog()
+
+    def _publish(self) -> None:
+        """Pass every state on; when there are none any more, their age tells the parent."""
+        pause_s = self._cycle_s / 4
+        while True:
+            if self._receive.getTimestamp() == self._latest["controller_s"]:
+                time.sleep(pause_s)
+                continue
+            raw = self._read()
+            raw["progress"] = 0.0 if self._motion is None else self._motion.progress
+            self._latest = raw
+            self._mailbox.write(raw)
+            self._fresh.set()
+
+    def _read(self) -> AnyArray:
+        """One state of `FIELDS`; read again when a new one came in the middle of it."""
+        receive = self._receive
+        raw = np.zeros((), FIELDS)
+        while raw["controller_s"] != (stamp_s := receive.getTimestamp()) or not stamp_s:
+            raw["controller_s"] = stamp_s
+            raw["time_s"] = time.monotonic()
+            raw["joints_rad"] = receive.getActualQ()
+            raw["target_joints_rad"] = receive.getTargetQ()
+            raw["joint_speeds_rad_s"] = receive.getActualQd()
+            raw["tool_pose"] = receive.getActualTCPPose()
+            raw["speed_scaling"] = receive.getSpeedScalingCombined()
+            raw["payload_kg"] = receive.getPayload()
+            raw["robot_mode"] = receive.getRobotMode()
+            raw["safety_mode"] = receive.getSafetyMode()
+            raw["runtime_state"] = receive.getRuntimeState()
+            raw["output_bits"] = receive.getActualDigitalOutputBits()
+        return raw
+
+
+def _refuse(error: RobotError | None) -> None:
+    if error is not None:
+        raise error
+
+
+def _explain(error: RuntimeError, address: str) -> DeviceError:
+    """What ur_rtde's own words mean for people."""
+    said = str(error)
+    if "remote control" in said:
+        return NotInRemoteControl(
+            f"The controller at {address} is in local control; choose remote control at the top right of its "
+            "panel, then recover the robot."
+        )
+    if "in use" in said or "variables" in said:
+        return RobotNotReady(
+            f"Another program drives the arm at {address} already; end it, then recover the robot."
+        )
+    if "control script" in said:
+        return RobotNotReady(
+            f"The control program does not start on the controller at {address}; see what its panel shows, "
+            "then recover the robot."
+        )
+    return RobotUnreachable(
+        f"The controller at {address} broke off ({said}); check the network cable, then try again."
+    )
+
+
+def _be_quiet() -> None:
+    """ur_rtde prints its progress from C, to both outputs."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    for descriptor in (1, 2):
+        os.dup2(nowhere, descriptor)
+
+
+def _end_with_parent() -> NoReturn:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait_for_handles([parent.sentinel])
+    os._exit(1)

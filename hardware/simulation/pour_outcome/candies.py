@@ -1,0 +1,123 @@
+"""The candies of one pour: each of its own size, and how they lie in the cup before they settle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import asin, cos, floor, pi, radians, sin
+
+import numpy as np
+
+from core.errors import InputError
+from core.geometry import FloatArray
+from core.imagination.cup import inner_radius_m
+from core.parameters.imagination import CupParameters
+from hardware.simulation.pour_outcome.settings import OutcomeSettings
+
+_SIDES = 12
+_LENTIL_HEIGHTS = (-0.6, 0.0, 0.6)
+_SKIN = 0.7
+"""Thickness of a candy's skin, relative to half its thickness: while only skins touch, contacts are quick to
+find and exact, and a fast candy is seen by a wall before it is in it."""
+_MAX_TILT_RAD = radians(20)
+_APART = 1.02
+_LARGEST_SD = 3.0
+
+
+@dataclass(frozen=True)
+class Candies:
+    """The candies of one pour.
+
+    Attributes:
+        scales: (N,) size of each, relative to the mean size.
+        positions_m: (N, 3) centres at the start, in the cup's frame; no two touch.
+        quaternions: (N, 4) orientations there, (x, y, z, w).
+    """
+
+    scales: FloatArray
+    positions_m: FloatArray
+    quaternions: FloatArray
+
+
+def fill_cup(cup: CupParameters, settings: OutcomeSettings) -> Candies:
+    """Draw sizes and lay the candies into the standing cup, layer upon layer, each a little tilted.
+
+    Raises:
+        InputError: the cup cannot hold so many.
+    """
+    n = settings.n_candies
+    drawn = np.random.default_rng([settings.seed, 0]).standard_normal(n)
+    scales = 1 + settings.size_spread * np.clip(drawn, -_LARGEST_SD, _LARGEST_SD)
+    random = np.random.default_rng([settings.seed, 1])
+    largest = 1 + _LARGEST_SD * settings.size_spread
+    width_m = _APART * largest * settings.candy_diameter_m
+    # A tilted tablet is the tallest that a candy of this diameter and thickness can be.
+    height_m = (
+        _APART
+        * largest
+        * (settings.candy_diameter_m * sin(_MAX_TILT_RAD) + settings.candy_height_m * cos(_MAX_TILT_RAD))
+    )
+    layers = []
+    for layer in range(floor((cup.length_m - cup.wall_m) / height_m)):
+        below_m = cup.wall_m + layer * height_m
+        places = _layer(float(inner_radius_m(cup, below_m)) - width_m / 2, width_m, random)
+        layers.append(np.column_stack([places, np.full(len(places), below_m + height_m / 2)]))
+    positions = np.vstack([np.empty((0, 3)), *layers])
+    if len(positions) < n:
+        raise InputError(
+            f"The cup has room for {len(positions)} candies of {settings.candy_diameter_m * 1000:.1f} mm, "
+            f"not for {n}; lower n_candies or take a larger cup."
+        )
+    return Candies(scales, positions[:n], _tilted(n, random))
+
+
+def hull_m(settings: OutcomeSettings, scale: float) -> FloatArray:
+    """Vertices (n, 3) of the hull inside a candy's skin, which lies flat in z."""
+    half = (
+        scale * np.array([settings.candy_diameter_m, settings.candy_diameter_m, settings.candy_height_m]) / 2
+    )
+    angles = np.arange(_SIDES) * 2 * pi / _SIDES
+    circle = np.column_stack([np.cos(angles), np.sin(angles)])
+    if settings.candy_shape == "tablet":
+        outline = [(1.0, -1.0), (1.0, 1.0)]
+    else:
+        outline = [(float(np.sqrt(1 - height**2)), height) for height in _LENTIL_HEIGHTS]
+    rings = [np.column_stack([radius * circle, np.full(_SIDES, height)]) for radius, height in outline]
+    vertices: FloatArray = np.vstack([*rings, [[0, 0, -1.0], [0, 0, 1.0]]]) * (half - skin_m(settings, scale))
+    return vertices
+
+
+def skin_m(settings: OutcomeSettings, scale: float) -> float:
+    """Thickness of the round skin that Bullet lays around a candy's hull (its collision margin)."""
+    return _SKIN * scale * min(settings.candy_height_m, settings.candy_diameter_m) / 2
+
+
+def inertia_kg_m2(settings: OutcomeSettings, scale: float) -> FloatArray:
+    """Principal moments (3,) of a solid candy; Bullet would take those of a box around it and its margin."""
+    mass_kg = settings.candy_mass_kg * scale**3
+    across_m, up_m = scale * settings.candy_diameter_m / 2, scale * settings.candy_height_m / 2
+    if settings.candy_shape == "tablet":
+        about_x = across_m**2 / 4 + up_m**2 / 3
+        return mass_kg * np.array([about_x, about_x, across_m**2 / 2])
+    about_x = (across_m**2 + up_m**2) / 5
+    return mass_kg * np.array([about_x, about_x, 2 * across_m**2 / 5])
+
+
+def _layer(radius_m: float, apart_m: float, random: np.random.Generator) -> FloatArray:
+    """Places (n, 2) on rings from the wall inwards, at least `apart_m` from each other, anyhow turned."""
+    places = [np.empty((0, 2))]
+    while radius_m >= 0:
+        is_ring = radius_m >= apart_m / 2
+        n = floor(pi / asin(apart_m / 2 / radius_m)) if is_ring else 1
+        angles = random.uniform(0, 2 * pi) + np.arange(n) * 2 * pi / n
+        ring = np.column_stack([np.cos(angles), np.sin(angles)])
+        places.append(ring * (radius_m if is_ring else 0.0))
+        radius_m -= apart_m
+    return np.vstack(places)
+
+
+def _tilted(n: int, random: np.random.Generator) -> FloatArray:
+    """Quaternions (n, 4) of a tilt about any horizontal axis."""
+    half, axis = random.uniform(0, _MAX_TILT_RAD, n) / 2, random.uniform(0, 2 * pi, n)
+    return np.column_stack(
+        [np.sin(half) * np.cos(axis), np.sin(half) * np.sin(axis), np.zeros(n), np.cos(half)]
+    )

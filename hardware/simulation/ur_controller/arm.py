@@ -1,0 +1,146 @@
+"""The arm itself: where its joints are, what moves them, how it brakes, and what does not follow."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry import FloatArray
+from core.motion.arm_models import ArmModel
+from core.motion.kinematics import flange_pose, jacobian
+from hardware.simulation.ur_controller.courses import Braking, Course
+from hardware.simulation.ur_controller.motions import CourseMotion, Motion, ServoMotion, SpeedMotion
+from hardware.simulation.ur_controller.poses import vector_from_pose
+
+STOP_RAD_S2 = 10.0
+"""How hard the controller brakes when a program or the power ends: from full speed in 0.3 s."""
+_PACE_PER_S = 5.0
+"""How fast a pause, a protective stop or the slider changes the pace: to a stand in 0.2 s."""
+_MOVING_RAD_S = 1e-4
+
+
+class Arm:
+    """Six joints with a controller that wants them somewhere.
+
+    Attributes:
+        model: its kinematics.
+        target_rad, target_speeds_rad_s: (6,) what the controller wants.
+        joints_rad, speeds_rad_s: (6,) what is.
+        T_flange_tcp: (4, 4) the tool, as set by the program.
+        payload_kg, payload_center_m: what it carries, as set by the program; without effect.
+        slider: share of the programmed speed, 0 to 1.
+        is_held: whether a pause or a protective stop keeps the motion from going on.
+        stuck: joints (0 to 5) that do not follow.
+    """
+
+    def __init__(self, model: ArmModel, joints_rad: npt.ArrayLike) -> None:
+        """Stand."""
+        self.model = model
+        self.joints_rad = self.target_rad = np.array(joints_rad, dtype=float)
+        self.speeds_rad_s = self.target_speeds_rad_s = np.zeros(6)
+        self.T_flange_tcp = np.eye(4)
+        self.payload_kg = 0.0
+        self.payload_center_m = (0.0, 0.0, 0.0)
+        self.slider = 1.0
+        self.is_held = False
+        self.stuck: set[int] = set()
+        self._pace = 1.0
+        self._motion: Motion | None = None
+        self._next: Callable[[FloatArray], Course] | None = None
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is left to be done."""
+        return self._motion is None and self._next is None
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether the controller wants a joint to turn at this moment."""
+        return bool(np.abs(self.target_speeds_rad_s).max() > _MOVING_RAD_S)
+
+    @property
+    def stands_held(self) -> bool:
+        """Whether a pause has brought it to a stand."""
+        return self.is_held and not self.is_moving
+
+    @property
+    def course_time_s(self) -> float:
+        """How long the present course has run, in the program's own time; 0 where there is none."""
+        if isinstance(self._motion, CourseMotion) and self._next is None:
+            return self._motion.time_s
+        return 0.0
+
+    def run(self, make: Callable[[FloatArray], Course]) -> None:
+        """Begin a course from rest, made for the joints (6,) where it begins; brake first if need be."""
+        if self.is_moving:
+            self.brake(STOP_RAD_S2)
+            self._next = make
+        else:
+            self._motion, self._next = CourseMotion(make(self.target_rad)), None
+
+    def servo(self) -> ServoMotion:
+        """Return the servo motion, begun if another one was going on."""
+        if not isinstance(self._motion, ServoMotion):
+            self._motion, self._next = ServoMotion(self.model, *self._now()), None
+        return self._motion
+
+    def speed(self) -> SpeedMotion:
+        """Return the speed motion, begun if another one was going on."""
+        if not isinstance(self._motion, SpeedMotion):
+            self._motion, self._next = SpeedMotion(self.model, *self._now()), None
+        return self._motion
+
+    def brake(self, deceleration_rad_s2: float) -> None:
+        """Stop what is going on, whatever the pace."""
+        self._next = None
+        braking = Braking(self.target_rad, self.target_speeds_rad_s, max(deceleration_rad_s2, 0.01))
+        self._motion = CourseMotion(braking, is_paced=False)
+
+    def brake_tool(self, deceleration_m_s2: float) -> None:
+        """Stop so that the tool slows down with a deceleration."""
+        speed = float(np.linalg.norm(self.tcp_speed(self.target_rad, self.target_speeds_rad_s)[:3]))
+        time_s = speed / max(deceleration_m_s2, 0.01)
+        fastest = float(np.abs(self.target_speeds_rad_s).max())
+        self.brake(fastest / time_s if time_s > 0 else STOP_RAD_S2)
+
+    def step(self, dt_s: float) -> None:
+        """Go on by one cycle."""
+        wanted = 0.0 if self.is_held else self.slider
+        self._pace += min(max(wanted - self._pace, -_PACE_PER_S * dt_s), _PACE_PER_S * dt_s)
+        if self._motion is not None:
+            pace = self._pace if self._motion.is_paced else 1.0
+            self._motion.advance(dt_s * pace)
+            self.target_rad = self._motion.joints_rad
+            self.target_speeds_rad_s = self._motion.speeds_rad_s * pace
+            if self._motion.is_done:
+                self._motion = None
+        elif self._next is not None and not self.is_held:
+            self._motion, self._next = CourseMotion(self._next(self.target_rad)), None
+        self._follow(dt_s)
+
+    def tcp_pose(self, joints_rad: FloatArray) -> FloatArray:
+        """Return UR's pose vector (6,) of the tool."""
+        return vector_from_pose(flange_pose(self.model, joints_rad) @ self.T_flange_tcp)
+
+    def tcp_speed(self, joints_rad: FloatArray, speeds_rad_s: FloatArray) -> FloatArray:
+        """Return the tool's velocity and turning (6,) in the base frame, m/s and rad/s."""
+        if not speeds_rad_s.any():
+            return np.zeros(6)
+        speed: FloatArray = jacobian(self.model, joints_rad) @ speeds_rad_s
+        lever = flange_pose(self.model, joints_rad)[:3, :3] @ self.T_flange_tcp[:3, 3]
+        speed[:3] += np.cross(speed[3:], lever)
+        return speed
+
+    def _now(self) -> tuple[FloatArray, FloatArray]:
+        return self.target_rad, self.target_speeds_rad_s
+
+    def _follow(self, dt_s: float) -> None:
+        """The joints are where they shall be, except stuck ones and those that were stuck a moment ago."""
+        reach = np.array(self.model.speed_limits_rad_s) * dt_s * 1.01
+        reach[list(self.stuck)] = 0.0
+        step = np.clip(self.target_rad - self.joints_rad, -reach, reach)
+        is_exact = not self.stuck and np.array_equal(self.joints_rad + step, self.target_rad)
+        self.joints_rad = self.target_rad if is_exact else self.joints_rad + step
+        self.speeds_rad_s = step / dt_s if step.any() else np.zeros(6)

@@ -1,0 +1,217 @@
+"""The controller's state: power, safety, the program's life, and one cycle of it all."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy.typing as npt
+
+from core.motion.arm_models import ArmModel
+from hardware.modes import RobotMode, SafetyMode
+from hardware.simulation.ur_controller.arm import STOP_RAD_S2, Arm
+from hardware.simulation.ur_controller.courses import NoSolution
+from hardware.simulation.ur_controller.identity import Identity
+from hardware.simulation.ur_controller.journal import Journal
+from hardware.simulation.ur_controller.program import ControlProgram
+from hardware.simulation.ur_controller.registers import Registers
+
+CONTROL_SCRIPT_MARK = "def rtde_control():"
+_SWITCHING_S = 1.0
+"""Powering on and releasing the brakes; the real ones take longer, but nobody gains by waiting."""
+_UNLOCK_AFTER_S = 5.0
+
+
+class RuntimeState(IntEnum):
+    """What the program does; RTDE's numbers."""
+
+    STOPPING = 0
+    STOPPED = 1
+    PLAYING = 2
+    PAUSING = 3
+    PAUSED = 4
+    RESUMING = 5
+
+
+class Controller:
+    """Everything but the sockets.
+
+    Attributes:
+        identity: which controller it is.
+        dt_s: one cycle.
+        time_s: the controller's own clock.
+        arm: the arm.
+        registers: what clients and the program write.
+        journal: what happened.
+        robot_mode, safety_mode, runtime_state: as RTDE tells them.
+        is_remote: whether it is in remote control (e-Series; always so on a CB3).
+        ignores_uploads: a fault: scripts come and nothing happens.
+        digital_outputs: bits; 16 and 17 are the tool's.
+    """
+
+    def __init__(self, identity: Identity, joints_rad: npt.ArrayLike) -> None:
+        """Be switched on, brakes released, no program."""
+        self.identity = identity
+        self.dt_s = 1 / identity.rate_hz
+        self.time_s = 0.0
+        self.arm = Arm(identity.model, joints_rad)
+        self.registers = Registers()
+        self.journal = Journal()
+        self.robot_mode = RobotMode.RUNNING
+        self.safety_mode = SafetyMode.NORMAL
+        self.runtime_state = RuntimeState.STOPPED
+        self.is_remote = True
+        self.ignores_uploads = False
+        self.digital_outputs = 0
+        self._cycles = 0
+        self._program: ControlProgram | None = None
+        self._stopped_at_s = 0.0
+        self._switching: list[tuple[float, RobotMode]] = []
+
+    def step(self) -> None:
+        """One cycle."""
+        self._cycles += 1
+        self.time_s = self._cycles * self.dt_s
+        self.journal.set_time(self.time_s)
+        try:
+            if self._program is not None and self.runtime_state is RuntimeState.PLAYING:
+                self._program.step()
+            self.arm.step(self.dt_s)
+        except NoSolution as error:
+            self.journal.note("script error", message=str(error))
+            self._end_program()
+        if self._program is not None and self._program.is_over:
+            self._end_program()
+        self._advance_runtime()
+        self._advance_power()
+
+    def upload(self, script: str) -> None:
+        """Take a script; a new one replaces the old one."""
+        is_control = CONTROL_SCRIPT_MARK in script
+        taken = self._takes_scripts()
+        self.journal.note("script", size=len(script), is_control_script=is_control, is_taken=taken)
+        if not taken:
+            return
+        self._end_program()
+        if is_control:
+            self._program = ControlProgram(
+                script, self.arm, self.registers, self.journal, self.protective_stop
+            )
+            self._set_held(False)
+            self.runtime_state = RuntimeState.PLAYING
+
+    def stop(self) -> bool:
+        """End the program; False if there is none."""
+        had_one = self._program is not None
+        self._end_program()
+        return had_one
+
+    def pause(self) -> bool:
+        """Bring the program to a stand; False if it does not run."""
+        if self.runtime_state not in (RuntimeState.PLAYING, RuntimeState.RESUMING):
+            return False
+        self._set_held(True)
+        self.runtime_state = RuntimeState.PAUSING
+        return True
+
+    def play(self) -> bool:
+        """Let a paused program go on, with the move that it was in; False if that cannot be."""
+        may = self.safety_mode.may_move and self.robot_mode is RobotMode.RUNNING
+        if not may or self.runtime_state not in (RuntimeState.PAUSING, RuntimeState.PAUSED):
+            return False
+        self._set_held(False)
+        self.runtime_state = RuntimeState.RESUMING
+        return True
+
+    def protective_stop(self) -> None:
+        """Stop on the way and hold; the program is paused."""
+        if self.safety_mode.may_move:
+            self.safety_mode = SafetyMode.PROTECTIVE_STOP
+            self._stopped_at_s = self.time_s
+            self.journal.note("protective stop")
+            if not self.pause():
+                self._set_held(True)
+
+    def unlock_protective_stop(self) -> bool:
+        """End a protective stop; False within 5 s of it. The program stays paused."""
+        if self.safety_mode is not SafetyMode.PROTECTIVE_STOP:
+            return True
+        if self.time_s - self._stopped_at_s < _UNLOCK_AFTER_S:
+            return False
+        self.safety_mode = SafetyMode.NORMAL
+        if self._program is None:
+            self._set_held(False)
+        return True
+
+    def emergency_stop(self) -> None:
+        """Stop, end the program, and take the power from the arm."""
+        self.safety_mode = SafetyMode.ROBOT_EMERGENCY_STOP
+        self.journal.note("emergency stop")
+        self.power_off()
+
+    def release_emergency_stop(self) -> None:
+        """Pull the button out again; the arm stays off."""
+        if self.safety_mode is SafetyMode.ROBOT_EMERGENCY_STOP:
+            self.safety_mode = SafetyMode.NORMAL
+
+    def safety_fault(self) -> None:
+        """Stop with a fault that only a restart of the safety system ends."""
+        self.safety_mode = SafetyMode.FAULT
+        self.power_off()
+
+    def restart_safety(self) -> None:
+        """End a fault or violation; the arm stays off."""
+        if self.safety_mode in (SafetyMode.FAULT, SafetyMode.VIOLATION):
+            self.safety_mode = SafetyMode.NORMAL
+
+    def power_off(self) -> None:
+        """Brake, end the program, and take the power from the arm."""
+        self._end_program()
+        self._set_held(False)
+        self.arm.brake(STOP_RAD_S2)
+        self._switching = [(0.0, RobotMode.POWER_OFF)]
+
+    def power_on(self) -> None:
+        """Give power to the arm; its brakes stay on."""
+        if self.robot_mode is RobotMode.POWER_OFF and self.safety_mode.may_move:
+            self.robot_mode = RobotMode.POWER_ON
+            self._switching = [(self.time_s + _SWITCHING_S, RobotMode.IDLE)]
+
+    def release_brakes(self) -> None:
+        """Release the brakes, after powering on if need be."""
+        self.power_on()
+        if self.robot_mode in (RobotMode.POWER_ON, RobotMode.IDLE):
+            begin_s = max([self.time_s, *(due_s for due_s, _ in self._switching)])
+            self._switching.append((begin_s + _SWITCHING_S, RobotMode.RUNNING))
+
+    def set_model(self, model: ArmModel) -> None:
+        """Be another arm from now on: a fault of the cell, found by its kinematics."""
+        self.arm.model = model
+
+    def _takes_scripts(self) -> bool:
+        is_ready = self.robot_mode is RobotMode.RUNNING and not self._switching
+        return is_ready and self.safety_mode.may_move and self.is_remote and not self.ignores_uploads
+
+    def _end_program(self) -> None:
+        if self._program is None:
+            return
+        self._program = None
+        self.journal.note("end of program")
+        self._set_held(False)
+        self.arm.brake(STOP_RAD_S2)
+        self.runtime_state = RuntimeState.STOPPING
+
+    def _set_held(self, is_held: bool) -> None:
+        self.arm.is_held = is_held
+
+    def _advance_runtime(self) -> None:
+        if self.runtime_state is RuntimeState.STOPPING and not self.arm.is_moving:
+            self.runtime_state = RuntimeState.STOPPED
+        elif self.runtime_state is RuntimeState.PAUSING and self.arm.stands_held:
+            self.runtime_state = RuntimeState.PAUSED
+        elif self.runtime_state is RuntimeState.RESUMING:
+            self.runtime_state = RuntimeState.PLAYING
+
+    def _advance_power(self) -> None:
+        if self._switching and self.time_s >= self._switching[0][0] and not self.arm.is_moving:
+            self.robot_mode = self._switching.pop(0)[1]
+            self.journal.note("robot mode", mode=self.robot_mode.name)

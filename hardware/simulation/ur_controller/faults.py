@@ -1,0 +1,207 @@
+"""Faults and questions, as lines of text: at once, after a time, or when the arm moves.
+
+| line | what happens |
+|---|---|
+| `protective stop` | the arm stops and holds; the program is paused |
+| `emergency stop`, `emergency release` | the button is pressed: no power, no program; it is released |
+| `safety fault` | only `restart safety` at the dashboard ends it |
+| `program stop`, `program pause`, `program play` | as at the panel |
+| `power off`, `local`, `remote` | the arm's power; who controls it |
+| `ignore uploads`, `heed uploads` | scripts come and nothing happens |
+| `take registers`, `release registers` | another client has every input |
+| `stick JOINT...`, `unstick` | joints (1 to 6) do not follow; they do again |
+| `slider SHARE`, `model NAME` | the speed slider; another arm's kinematics |
+| `link drop [SECONDS]` | every connection is closed; new ones are refused that long |
+| `link silent [SECONDS]` | everything stays open, nothing passes; for ever without a time |
+| `latency MS [JITTER_MS]` | on everything, in each direction |
+| `refuse [SECONDS]` | new connections are refused |
+| `link restore` | the link is as it was |
+| `kill` | the process ends at once |
+| `in SECONDS LINE`, `when moving LINE` | the line later; both may be combined |
+| `state`, `log [N]` | what the controller knows; the newest N entries of its journal; as JSON |
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import os
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from hardware.simulation.ur_controller.controller import Controller
+from hardware.simulation.ur_controller.identity import MODELS
+from hardware.simulation.ur_controller.link import Network
+
+_KILLED = 9
+_NEWEST = 200
+_OTHER_CLIENT = object()
+
+
+class FaultRefused(Exception):
+    """The line is no command; the text says why."""
+
+
+class FaultDesk:
+    """Takes one line, does it, and returns one line.
+
+    Times are in seconds of the wall clock: links are.
+    """
+
+    def __init__(self, controller: Controller, network: Network, refuse: Callable[[bool], None]) -> None:
+        """Serve a controller; `refuse` closes the listening sockets or opens them again."""
+        self._controller = controller
+        self._network = network
+        self._refuse = refuse
+        self._when_moving: list[Callable[[], None]] = []
+        c = controller
+        self._plain: dict[str, Callable[[], None]] = {
+            "protective stop": c.protective_stop,
+            "emergency stop": c.emergency_stop,
+            "emergency release": c.release_emergency_stop,
+            "safety fault": c.safety_fault,
+            "program stop": lambda: _must(c.stop(), "there is no program to stop"),
+            "program pause": lambda: _must(c.pause(), "the program does not run"),
+            "program play": lambda: _must(c.play(), "there is nothing to go on with"),
+            "power off": c.power_off,
+            "local": lambda: setattr(c, "is_remote", False),
+            "remote": lambda: setattr(c, "is_remote", True),
+            "ignore uploads": lambda: setattr(c, "ignores_uploads", True),
+            "heed uploads": lambda: setattr(c, "ignores_uploads", False),
+            "take registers": lambda: c.registers.take_all(_OTHER_CLIENT),
+            "release registers": lambda: c.registers.release(_OTHER_CLIENT),
+            "unstick": c.arm.stuck.clear,
+            "link restore": self._restore,
+            "kill": lambda: os._exit(_KILLED),
+        }
+        self._with_numbers: dict[str, Callable[[list[float]], None]] = {
+            "link drop": self._drop,
+            "link silent": self._silence,
+            "refuse": self._refuse_for,
+            "latency": self._delay,
+            "stick": self._stick,
+            "slider": self._slide,
+        }
+
+    def take(self, line: str) -> str:
+        """Do what the line says.
+
+        Raises:
+            FaultRefused: the line is no command.
+        """
+        words = line.split()
+        if words[:1] == ["state"]:
+            return json.dumps(self.state())
+        if words[:1] == ["log"]:
+            number = int(_numbers(words[1:])[0]) if words[1:] else _NEWEST
+            return json.dumps(self._controller.journal.newest(number))
+        self._find(words)()
+        return "ok"
+
+    def look(self) -> None:
+        """Called in every cycle: do what waits for a movement."""
+        if self._when_moving and self._controller.arm.is_moving:
+            due, self._when_moving = self._when_moving, []
+            for action in due:
+                self._do(action)
+
+    def state(self) -> dict[str, Any]:
+        """What the controller knows, for JSON."""
+        c = self._controller
+        return {
+            "time_s": c.time_s,
+            "model": c.arm.model.name,
+            "version": ".".join(map(str, c.identity.version)),
+            "joints_rad": c.arm.joints_rad.tolist(),
+            "target_rad": c.arm.target_rad.tolist(),
+            "speeds_rad_s": c.arm.speeds_rad_s.tolist(),
+            "is_moving": c.arm.is_moving,
+            "robot_mode": c.robot_mode.name,
+            "safety_mode": c.safety_mode.name,
+            "runtime_state": c.runtime_state.name,
+            "is_remote": c.is_remote,
+            "slider": c.arm.slider,
+            "digital_outputs": c.digital_outputs,
+            "tool_outputs": [bool(c.digital_outputs >> 16 & 1), bool(c.digital_outputs >> 17 & 1)],
+            "payload_kg": c.arm.payload_kg,
+            "connections": sorted(link.name for link in self._network.links),
+            "counts": dict(c.journal.counts),
+        }
+
+    def _find(self, words: list[str]) -> Callable[[], None]:
+        """Return what a line means."""
+        if words[:1] == ["in"] and len(words) > 2:
+            delay_s, action = _numbers(words[1:2])[0], self._find(words[2:])
+            return lambda: self._later(delay_s, action)
+        if words[:2] == ["when", "moving"]:
+            action = self._find(words[2:])
+            return lambda: self._when_moving.append(action)
+        line = " ".join(words)
+        if line in self._plain:
+            return self._plain[line]
+        for name, numbered in self._with_numbers.items():
+            if line == name or line.startswith(name + " "):
+                numbers = _numbers(line[len(name) :].split())
+                return partial(numbered, numbers)
+        if line.startswith("model ") and line[6:] in MODELS:
+            return lambda: self._controller.set_model(MODELS[line[6:]])
+        known = ", ".join([*self._plain, *self._with_numbers, "model", "state", "log"])
+        raise FaultRefused(f"'{line}' is no command; known: {known}; before each: in SECONDS, when moving")
+
+    def _later(self, delay_s: float, action: Callable[[], None]) -> None:
+        asyncio.get_running_loop().call_later(delay_s, self._do, action)
+
+    def _do(self, action: Callable[[], None]) -> None:
+        """Nobody waits for the answer any more."""
+        try:
+            action()
+        except FaultRefused as error:
+            self._controller.journal.note("fault refused", message=str(error))
+
+    def _drop(self, numbers: list[float]) -> None:
+        self._network.drop()
+        if numbers:
+            self._refuse_for(numbers)
+
+    def _silence(self, numbers: list[float]) -> None:
+        self._network.silence(True)
+        if numbers:
+            self._later(numbers[0], lambda: self._network.silence(False))
+
+    def _refuse_for(self, numbers: list[float]) -> None:
+        self._refuse(True)
+        if numbers:
+            self._later(numbers[0], lambda: self._refuse(False))
+
+    def _restore(self) -> None:
+        self._network.latency_s = self._network.jitter_s = 0.0
+        self._network.silence(False)
+        self._refuse(False)
+
+    def _delay(self, numbers: list[float]) -> None:
+        latency_ms, jitter_ms = [*numbers, 0.0, 0.0][:2]
+        self._network.latency_s, self._network.jitter_s = latency_ms / 1000, jitter_ms / 1000
+
+    def _stick(self, numbers: list[float]) -> None:
+        joints = {int(number) for number in numbers}
+        _must(bool(joints) and joints <= set(range(1, 7)), "joints are numbered 1 to 6")
+        self._controller.arm.stuck |= {joint - 1 for joint in joints}
+
+    def _slide(self, numbers: list[float]) -> None:
+        _must(len(numbers) == 1 and 0 <= numbers[0] <= 1, "the slider goes from 0 to 1")
+        self._controller.arm.slider = numbers[0]
+
+
+def _must(is_so: bool, sentence: str) -> None:
+    if not is_so:
+        raise FaultRefused(sentence)
+
+
+def _numbers(words: list[str]) -> list[float]:
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError as error:
+        raise FaultRefused(f"'{' '.join(words)}' should be numbers") from error
+    _must(all(number >= 0 for number in numbers), "numbers must not be negative")
+    return numbers

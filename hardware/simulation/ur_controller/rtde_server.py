@@ -1,0 +1,160 @@
+"""The real-time data exchange: one connection, its recipes, its frames."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+
+from hardware.simulation.ur_controller.controller import Controller
+from hardware.simulation.ur_controller.link import Link, Network
+from hardware.simulation.ur_controller.outputs import Values
+from hardware.simulation.ur_controller.rtde_protocol import (
+    IN_USE,
+    NOT_FOUND,
+    OUTPUT_TYPES,
+    FrameReader,
+    Kind,
+    frame,
+    layout,
+)
+
+_PROTOCOL = 2
+_MAX_RECIPES = 255
+_TOOL_SHIFT, _CONFIGURABLE_SHIFT = 16, 8
+_DIGITAL_OUTPUTS = {
+    "standard_digital_output": 0,
+    "configurable_digital_output": _CONFIGURABLE_SHIFT,
+    "tool_digital_output": _TOOL_SHIFT,
+}
+"""Where the bits of each group of outputs begin."""
+
+
+@dataclass(frozen=True)
+class _Recipe:
+    """Fields that come together, in this order."""
+
+    names: list[str]
+    layout: struct.Struct
+
+
+class RtdeLink(Link):
+    """One client of the data exchange."""
+
+    name = "rtde"
+
+    def __init__(self, network: Network, controller: Controller) -> None:
+        """Wait for the client's set-up."""
+        super().__init__(network, controller.journal)
+        self._controller = controller
+        self._reader = FrameReader()
+        self._inputs: dict[int, _Recipe] = {}
+        self._output: _Recipe | None = None
+        self._every = 1
+        self._cycle = 0
+        self._is_started = False
+
+    @property
+    def wanted(self) -> list[str]:
+        """The fields that the client wants now."""
+        return self._output.names if self._output is not None and self._is_started else []
+
+    def closed(self) -> None:
+        """Give back the registers."""
+        self._is_started = False
+        self._controller.registers.release(self)
+
+    def received(self, data: bytes) -> None:
+        """Take the client's frames."""
+        try:
+            for kind, payload in self._reader.feed(data):
+                self._take_frame(kind, payload)
+        except (ValueError, struct.error, UnicodeDecodeError) as error:
+            self._journal.note("bad frame", message=str(error))
+            self.abort()
+
+    def send_state(self, values: dict[str, Values], cycles: int) -> None:
+        """Send the fields, if it is time to; `cycles` have passed since the last call."""
+        if self._output is None or not self._is_started:
+            return
+        self._cycle += cycles
+        if self._cycle < self._every:
+            return
+        self._cycle %= self._every
+        flat = [number for name in self._output.names for number in values[name]]
+        self.send(frame(Kind.DATA, b"\x01" + self._output.layout.pack(*flat)))
+
+    def _take_frame(self, kind: int, payload: bytes) -> None:
+        if kind == Kind.DATA:
+            self._take_data(payload)
+        elif kind == Kind.PROTOCOL_VERSION:
+            (version,) = struct.unpack(">H", payload)
+            self.send(frame(Kind.PROTOCOL_VERSION, bytes([version == _PROTOCOL])))
+        elif kind == Kind.CONTROLLER_VERSION:
+            major, minor = self._controller.identity.version
+            self.send(frame(Kind.CONTROLLER_VERSION, struct.pack(">4I", major, minor, 0, 0)))
+        elif kind == Kind.SETUP_OUTPUTS:
+            self._set_up_outputs(payload)
+        elif kind == Kind.SETUP_INPUTS:
+            self._set_up_inputs(payload)
+        elif kind in (Kind.START, Kind.PAUSE):
+            is_taken = self._output is not None or kind == Kind.PAUSE
+            self._is_started = is_taken and kind == Kind.START
+            self.send(frame(Kind(kind), bytes([is_taken])))
+        else:
+            self._journal.note("text message" if kind == Kind.TEXT_MESSAGE else "unknown frame", kind=kind)
+
+    def _set_up_outputs(self, payload: bytes) -> None:
+        (frequency_hz,) = struct.unpack_from(">d", payload)
+        names = _names(payload[8:])
+        types = [OUTPUT_TYPES.get(name, NOT_FOUND) for name in names]
+        unknown = [name for name in names if name not in OUTPUT_TYPES]
+        self._journal.note("outputs", names=names, frequency_hz=frequency_hz, unknown=unknown)
+        if not unknown:
+            self._output = _Recipe(names, layout(types))
+            rate_hz = self._controller.identity.rate_hz
+            self._every = max(1, round(rate_hz / frequency_hz)) if frequency_hz > 0 else 1
+        self.send(frame(Kind.SETUP_OUTPUTS, bytes([not unknown]) + ",".join(types).encode()))
+
+    def _set_up_inputs(self, payload: bytes) -> None:
+        names = _names(payload)
+        types = self._controller.registers.claim(names, self)
+        is_fine = not {IN_USE, NOT_FOUND} & set(types) and len(self._inputs) < _MAX_RECIPES
+        number = len(self._inputs) + 1 if is_fine else 0
+        self._journal.note("inputs", names=names, recipe=number)
+        if is_fine:
+            self._inputs[number] = _Recipe(names, layout(types))
+        self.send(frame(Kind.SETUP_INPUTS, bytes([number]) + ",".join(types).encode()))
+
+    def _take_data(self, payload: bytes) -> None:
+        recipe = self._inputs.get(payload[0])
+        if recipe is None:
+            self._journal.note("data without a recipe", recipe=payload[0])
+            return
+        missing = recipe.layout.size + 1 - len(payload)
+        if missing:
+            # Clients do not check the length of vectors. What is too much is left, what is too little is not
+            # taken at all; what a real controller does with either is not known.
+            self._journal.note("data of a wrong length", recipe=payload[0], missing_bytes=missing)
+        if missing > 0:
+            return
+        values = dict(zip(recipe.names, recipe.layout.unpack_from(payload, 1), strict=True))
+        for name, value in values.items():
+            self._controller.registers.write(name, value)
+        self._switch_outputs(values)
+
+    def _switch_outputs(self, values: dict[str, float]) -> None:
+        controller = self._controller
+        if values.get("speed_slider_mask"):
+            controller.arm.slider = min(max(float(values["speed_slider_fraction"]), 0.0), 1.0)
+            self._journal.note("slider", fraction=controller.arm.slider)
+        for group, shift in _DIGITAL_OUTPUTS.items():
+            mask = int(values.get(f"{group}_mask", 0))
+            if mask:
+                bits = int(values[group]) & mask
+                controller.digital_outputs &= ~(mask << shift)
+                controller.digital_outputs |= bits << shift
+                self._journal.note("digital outputs", group=group, mask=mask, bits=bits)
+
+
+def _names(text: bytes) -> list[str]:
+    return [name for name in text.decode("ascii").split(",") if name]

@@ -1,0 +1,174 @@
+"""The controller on its sockets, and the clock that drives it."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from ipaddress import ip_address
+
+from core.errors import InputError
+from hardware.simulation.ur_controller.addresses import (
+    CONTROL_PORT,
+    DASHBOARD_PORT,
+    HOME_RAD,
+    RTDE_PORT,
+    SCRIPT_PORT,
+)
+from hardware.simulation.ur_controller.control_socket import ControlLink
+from hardware.simulation.ur_controller.controller import Controller
+from hardware.simulation.ur_controller.dashboard import DashboardLink
+from hardware.simulation.ur_controller.faults import FaultDesk, FaultRefused
+from hardware.simulation.ur_controller.identity import Identity
+from hardware.simulation.ur_controller.link import Network
+from hardware.simulation.ur_controller.outputs import Outputs
+from hardware.simulation.ur_controller.rtde_server import RtdeLink
+from hardware.simulation.ur_controller.script_server import ScriptLink
+
+_ADDRESS_TRIES = 50
+_LARGEST_LAG_S = 1.0
+"""Beyond this much wall time, as after a suspended machine, what was missed is left out."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What shall be simulated.
+
+    Attributes:
+        identity: model and version.
+        address: on loopback; none: any 127.x.y.z that is free.
+        joints_rad: (6,) where the arm stands at first.
+        speed_up: how many times faster than the wall clock the controller's clock runs.
+        faults: lines for the fault desk, taken at the start.
+    """
+
+    identity: Identity
+    address: str | None = None
+    joints_rad: Sequence[float] = HOME_RAD
+    speed_up: float = 1.0
+    faults: Sequence[str] = ()
+
+
+class ControllerServer:
+    """A controller with its servers, in an asyncio loop."""
+
+    def __init__(self, wish: Wish) -> None:
+        """Prepare; nothing listens yet."""
+        self._wish = wish
+        self._controller = Controller(wish.identity, wish.joints_rad)
+        self._outputs = Outputs(self._controller)
+        self._network = Network()
+        self._desk = FaultDesk(self._controller, self._network, self._refuse)
+        self._servers: list[asyncio.Server] = []
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._address = ""
+
+    async def run(self, listens: Callable[[str], None]) -> None:
+        """Serve until cancelled; tell the address once everything listens.
+
+        Raises:
+            InputError: the address cannot be used, or a fault's line is none.
+        """
+        control = await self._listen_somewhere()
+        try:
+            for line in self._wish.faults:
+                self._desk.take(line)
+            listens(self._address)
+            await self._cycle()
+        except FaultRefused as error:
+            raise InputError(f"The fault cannot be set up: {error}.") from error
+        finally:
+            control.close()
+            for server in self._servers:
+                server.close()
+            self._network.drop()
+
+    async def _listen_somewhere(self) -> asyncio.Server:
+        wanted = self._wish.address
+        if wanted and not _is_loopback(wanted):
+            raise InputError(
+                f"A simulated controller listens on loopback only; choose 127.x.y.z, not {wanted}."
+            )
+        pick = random.SystemRandom()
+        for _ in range(1 if wanted else _ADDRESS_TRIES):
+            self._address = wanted or ".".join(["127", *(str(pick.randint(1, 254)) for _ in range(3))])
+            try:
+                control = await self._server(
+                    lambda: ControlLink(self._desk, self._controller.journal), CONTROL_PORT
+                )
+            except OSError:
+                continue
+            try:
+                await self._open()
+            except OSError:
+                control.close()
+                continue
+            return control
+        raise InputError(
+            f"Nothing can listen at {wanted or 'any loopback address'} on ports {DASHBOARD_PORT}, "
+            f"{SCRIPT_PORT}, {RTDE_PORT} and {CONTROL_PORT}; end what listens there, or choose another "
+            "127.x.y.z."
+        )
+
+    async def _open(self) -> None:
+        makers: list[tuple[Callable[[], asyncio.Protocol], int]] = [
+            (lambda: DashboardLink(self._network, self._controller), DASHBOARD_PORT),
+            (lambda: ScriptLink(self._network, self._controller), SCRIPT_PORT),
+            (lambda: RtdeLink(self._network, self._controller), RTDE_PORT),
+        ]
+        try:
+            for make, port in makers:
+                self._servers.append(await self._server(make, port))
+        except OSError:
+            self._close()
+            raise
+
+    async def _server(self, make: Callable[[], asyncio.Protocol], port: int) -> asyncio.Server:
+        return await asyncio.get_running_loop().create_server(make, self._address, port, reuse_address=True)
+
+    def _close(self) -> None:
+        for server in self._servers:
+            server.close()
+        self._servers.clear()
+
+    def _refuse(self, is_refused: bool) -> None:
+        if is_refused:
+            self._close()
+        elif not self._servers:
+            task = asyncio.get_running_loop().create_task(self._open())
+            self._tasks.add(task)
+            task.add_done_callback(self._tasks.discard)
+
+    async def _cycle(self) -> None:
+        """Keep the controller's clock with the wall clock, several cycles at once where a wake-up is late."""
+        loop = asyncio.get_running_loop()
+        period_s = self._controller.dt_s / self._wish.speed_up
+        begin_s, done = loop.time(), 0
+        while True:
+            due = int((loop.time() - begin_s) / period_s) - done
+            if due * period_s > _LARGEST_LAG_S:
+                begin_s += due * period_s - _LARGEST_LAG_S
+                continue
+            for _ in range(due):
+                self._controller.step()
+                self._desk.look()
+            if due > 0:
+                done += due
+                self._send_state(due)
+            await asyncio.sleep(max(begin_s + (done + 1) * period_s - loop.time(), 0))
+
+    def _send_state(self, cycles: int) -> None:
+        links = [link for link in self._network.links if isinstance(link, RtdeLink) and link.wanted]
+        if not links:
+            return
+        values = self._outputs.refresh({name for link in links for name in link.wanted})
+        for link in links:
+            link.send_state(values, cycles)
+
+
+def _is_loopback(address: str) -> bool:
+    with suppress(ValueError):
+        return ip_address(address).is_loopback
+    return False

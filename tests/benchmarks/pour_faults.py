@@ -1,0 +1,98 @@
+"""Random faults at random times of a pour, through the real driver: `make pour-faults`.
+
+After each fault: how long until the arm stands, what was raised, whether anything went on by itself, and
+whether it recovered and backed off. Every tenth time a whole pour follows.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import signal
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from core.session.pour_runs import PourRun
+from tests.hardware.pouring.rig import Rig, driver_pid
+
+LINES = {
+    "protective stop": (),
+    "emergency stop": ("emergency release",),
+    "program stop": (),
+    "program pause": (),
+    "power off": (),
+    "link drop": (),
+    "link silent": ("link restore",),
+    "stick 1 2 3 4 5 6": ("unstick",),
+    "driver killed": (),
+    "driver frozen": (),
+}
+SIGNALS = {"driver killed": signal.SIGKILL, "driver frozen": signal.SIGSTOP}
+WHOLE_POUR_EVERY = 10
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--number", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--speed-up", type=float, default=4.0)
+    wishes = parser.parse_args()
+    chance = random.Random(wishes.seed)
+    stood_s: list[float] = []
+    kinds: Counter[str] = Counter()
+    failures: list[str] = []
+    with tempfile.TemporaryDirectory() as folder, Rig(Path(folder), wishes.speed_up) as rig:
+        for k in range(wishes.number):
+            fault = chance.choice(list(LINES))
+            try:
+                stood, kind = one_fault(rig, fault, chance.random(), k % WHOLE_POUR_EVERY == 0)
+            except Exception as error:
+                failures.append(f"{k}: {fault}: {error!r}")
+                print(failures[-1], flush=True)
+                break
+            stood_s.append(stood)
+            kinds[f"{fault} -> {kind}"] += 1
+            print(f"{k}: {fault}: stood after {stood:.3f} s, {kind}", flush=True)
+    print(
+        f"\n{len(stood_s)} faults, {len(failures)} failures; the arm stood after at most {max(stood_s):.3f} s"
+    )
+    print(f"(median {np.median(stood_s):.3f} s, {sum(s > 0.5 for s in stood_s)} over 0.5 s)")
+    for name, number in sorted(kinds.items()):
+        print(f"  {number:4d}  {name}")
+
+
+def one_fault(rig: Rig, fault: str, share: float, is_whole_pour_after: bool) -> tuple[float, str]:
+    """Return how long the arm needed to stand and the kind of error."""
+    thread = rig.pour_in_background()
+    time.sleep(share * thread.fresh.plan.duration_s / rig.speed_up)
+    if fault in SIGNALS:
+        os.kill(driver_pid(), SIGNALS[fault])
+    else:
+        rig.controller.command(fault)
+    stood_s = rig.seconds_to_rest()
+    thread.join(20)
+    assert not thread.is_alive(), "the pour neither ended nor raised"
+    before = rig.joints_rad
+    for line in LINES[fault]:
+        rig.controller.command(line)
+    time.sleep(0.2)
+    assert not rig.is_moving and np.abs(rig.joints_rad - before).max() < 1e-4, "it went on by itself"
+    run = PourRun.load(rig.pouring.last_run)
+    assert run.is_done or run.events[-1]["kind"] == "stopped", "the session does not tell what happened"
+    rig.pouring.recover()
+    if rig.pouring.is_interrupted:
+        rig.pouring.back_off(rig.pouring.plan_back_off())
+    home = np.abs(rig.joints_rad - np.array(rig.settings.robot.home_rad)).max()
+    assert home < 2e-3, f"not home: {home}"
+    if is_whole_pour_after:
+        assert PourRun.load(rig.pouring.carry_out(rig.pouring.plan())).is_done
+    return stood_s, type(thread.error).__name__
+
+
+if __name__ == "__main__":
+    main()

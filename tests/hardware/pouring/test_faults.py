@@ -1,0 +1,155 @@
+"""Each row of the fault table, during approach, carry and pour, through the real driver over TCP."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+
+from core.session.pour_runs import PourRun, pour_runs
+from hardware.errors import (
+    EmergencyStop,
+    NotInRemoteControl,
+    ProgramStopped,
+    ProtectiveStop,
+    RobotError,
+    RobotLost,
+    RobotNotReady,
+    TrackingLost,
+)
+from tests.hardware.pouring.rig import Rig, driver_pid
+
+pytest.importorskip("rtde_control")
+
+STANDS_WITHIN_S = 0.5
+FAULTS = {
+    "protective stop": (ProtectiveStop, ()),
+    "emergency stop": (EmergencyStop, ("emergency release",)),
+    "program stop": (ProgramStopped, ()),
+    "program pause": (ProgramStopped, ()),
+    "power off": (RobotNotReady, ()),
+    "link drop": ((RobotLost, ProgramStopped), ()),
+    "link silent": (RobotLost, ("link restore",)),
+    "stick 1 2 3 4 5 6": (TrackingLost, ("unstick",)),
+}
+PHASES = {"approach": ("to the cup", 0.5), "carry": ("carry", 0.5), "pour": ("pour", 0.4)}
+
+
+@pytest.fixture
+def rig(tmp_path):
+    with Rig(tmp_path) as rig:
+        yield rig
+
+
+@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_fault_stops_the_arm_and_the_next_pour_succeeds(rig, fault, phase):
+    kind, repair = FAULTS[fault]
+    thread = rig.pour_in_background()
+    rig.wait_for_move(*PHASES[phase], thread)
+    rig.controller.command(fault)
+    stood_after_s = rig.seconds_to_rest()
+    thread.join(10)
+
+    assert stood_after_s < STANDS_WITHIN_S
+    assert isinstance(thread.error, kind), repr(thread.error)
+    is_told(thread.error)
+    nothing_goes_on(rig)
+    session_is_intact(rig)
+    for line in repair:
+        rig.controller.command(line)
+    nothing_goes_on(rig)
+    recovers_and_pours(rig)
+
+
+@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_driver_that_dies_or_freezes_stops_the_arm(rig, number, phase):
+    thread = rig.pour_in_background()
+    rig.wait_for_move(*PHASES[phase], thread)
+    os.kill(driver_pid(), number)
+    stood_after_s = rig.seconds_to_rest()
+    thread.join(10)
+
+    assert stood_after_s < STANDS_WITHIN_S
+    assert isinstance(thread.error, RobotError), repr(thread.error)
+    is_told(thread.error)
+    nothing_goes_on(rig)
+    session_is_intact(rig)
+    recovers_and_pours(rig)
+
+
+def test_a_slow_link_costs_time_and_nothing_else(rig):
+    rig.controller.command("latency 20 20")
+    try:
+        thread = rig.pour_in_background()
+        thread.join(60)
+    finally:
+        rig.controller.command("link restore")
+    assert thread.error is None
+    assert PourRun.load(rig.pouring.last_run).is_done
+
+
+def test_somebody_who_cancels_stops_the_arm(rig):
+    thread = rig.pour_in_background()
+    rig.wait_for_move("carry", 0.5, thread)
+    rig.reporter.cancel()
+    assert rig.seconds_to_rest() < STANDS_WITHIN_S
+    thread.join(10)
+    assert type(thread.error).__name__ == "Cancelled"
+    nothing_goes_on(rig)
+    rig.reporter.forget_cancel()
+    recovers_and_pours(rig)
+
+
+def test_emergency_stop_that_is_still_pressed_and_local_control_are_named_on_recovery(tmp_path):
+    with Rig(tmp_path, version="5.11") as rig:
+        thread = rig.pour_in_background()
+        rig.wait_for_move("carry", 0.3, thread)
+        rig.controller.command("emergency stop")
+        thread.join(10)
+        with pytest.raises(EmergencyStop, match="release"):
+            rig.pouring.recover()
+        rig.controller.command("emergency release")
+        rig.controller.command("local")
+        with pytest.raises(NotInRemoteControl):
+            rig.pouring.recover()
+        rig.controller.command("remote")
+        recovers_and_pours(rig)
+
+
+def is_told(error):
+    """One sentence: what happened and what to do."""
+    assert len(str(error)) > 40
+    assert "\n" not in str(error)
+    assert any(word in str(error) for word in (";", ":")), str(error)
+
+
+def nothing_goes_on(rig):
+    before = rig.joints_rad
+    time.sleep(0.3)
+    assert not rig.is_moving
+    assert rig.joints_rad == pytest.approx(before, abs=1e-4)
+
+
+def session_is_intact(rig):
+    run = pour_runs(rig.session)[-1]
+    assert not run.is_done
+    assert run.events[-1]["kind"] == "stopped"
+    assert run.sentence.startswith("Stopped during")
+    assert (run.folder / "states.csv").stat().st_size > 0
+
+
+def recovers_and_pours(rig):
+    rig.pouring.recover()
+    nothing_goes_on(rig)
+    rig.pouring.back_off(rig.pouring.plan_back_off())
+    home = np.array(rig.settings.robot.home_rad)
+    assert rig.joints_rad == pytest.approx(home, abs=2e-3)
+    assert not rig.pouring.is_interrupted
+    run = rig.pouring.carry_out(rig.pouring.plan())
+    assert PourRun.load(run).is_done
+    assert rig.joints_rad == pytest.approx(home, abs=2e-3)

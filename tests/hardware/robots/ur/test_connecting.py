@@ -1,0 +1,147 @@
+"""Who is at the address: nobody, somebody else, another arm, an arm that is not ready."""
+
+from __future__ import annotations
+
+import socket
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+
+import numpy as np
+import pytest
+
+from core.motion.arm_models import UR5, UR5E
+from hardware.errors import (
+    EmergencyStop,
+    NotInRemoteControl,
+    ProtectiveStop,
+    RobotError,
+    RobotLost,
+    RobotNotReady,
+    RobotUnreachable,
+    WrongRobot,
+)
+from hardware.robots.ur.probe import DASHBOARD_PORT, DATA_PORT, SCRIPT_PORT
+from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.hardware.robots.ur.bench import HOME, Bench, driver
+
+EMPTY_ADDRESS = "127.83.11.7"
+
+
+@pytest.fixture
+def listeners() -> Iterator[list[socket.socket]]:
+    """Somebody who listens on all ports and greets as a mail server does."""
+    with ExitStack() as stack:
+        sockets = [
+            stack.enter_context(socket.create_server((EMPTY_ADDRESS, port)))
+            for port in (DASHBOARD_PORT, SCRIPT_PORT, DATA_PORT)
+        ]
+        threading.Thread(target=greet_once, args=(sockets[0],), daemon=True).start()
+        yield sockets
+
+
+def greet_once(listener: socket.socket) -> None:
+    with suppress(OSError), listener.accept()[0] as connection:
+        connection.sendall(b"220 mail.example.org ESMTP: say hello first\r\n")
+
+
+def refuses(address: str, error: type[RobotError], said: str) -> None:
+    began_s = time.monotonic()
+    robot = driver(address)
+    with pytest.raises(error, match=said), robot:
+        pass
+    assert time.monotonic() - began_s < 5
+    with pytest.raises(RobotLost, match="not connected"):
+        robot.state()
+
+
+def test_nobody() -> None:
+    refuses(EMPTY_ADDRESS, RobotUnreachable, f"Nobody answers at {EMPTY_ADDRESS} on its dashboard port 29999")
+
+
+def test_no_address() -> None:
+    refuses("no such host.", RobotUnreachable, "Nobody answers at no such host")
+    refuses("a" * 70, RobotUnreachable, "Nobody answers")
+
+
+def test_somebody_else(listeners: list[socket.socket]) -> None:
+    refuses(EMPTY_ADDRESS, RobotUnreachable, "on port 29999 is no UR controller")
+
+
+def test_somebody_else_with_one_port(listeners: list[socket.socket]) -> None:
+    for listener in listeners[1:]:
+        listener.close()
+    refuses(EMPTY_ADDRESS, RobotUnreachable, "on port 29999 is no UR controller")
+
+
+def test_a_controller_that_froze(controller: ControllerProcess) -> None:
+    controller.command("link silent 6")
+    refuses(controller.address, RobotUnreachable, "no UR controller")
+
+
+def test_another_model(controller: ControllerProcess) -> None:
+    began = np.array(HOME)
+    with (
+        pytest.raises(WrongRobot, match=r"not the UR5e of the cell file: .* \d\d mm"),
+        driver(controller.address, UR5E),
+    ):
+        pass
+    controller.command("model UR5e")
+    refuses(controller.address, WrongRobot, "not the UR5 of the cell file")
+    np.testing.assert_array_equal(Bench(controller, driver(controller.address)).joints(), began)
+
+
+def test_a_factory_calibration_is_tolerated_within_the_tolerance(controller: ControllerProcess) -> None:
+    controller.command("model UR5e")
+    with driver(controller.address, UR5, tolerance_m=0.2) as robot:
+        assert robot.state().is_program_running
+
+
+def test_an_e_series_in_local_control() -> None:
+    with ControllerProcess(version="5.11", faults=["local"]) as controller:
+        refuses(controller.address, NotInRemoteControl, "choose remote control")
+
+
+@pytest.mark.parametrize(
+    ("fault", "error", "said"),
+    [
+        ("power off", RobotNotReady, "'power off'"),
+        ("emergency stop", EmergencyStop, "release it"),
+        ("protective stop", ProtectiveStop, "protective stop"),
+        ("safety fault", RobotNotReady, "'fault'"),
+        ("take registers", RobotNotReady, "Another program"),
+    ],
+)
+def test_an_arm_that_is_not_ready(
+    controller: ControllerProcess, fault: str, error: type[RobotError], said: str
+) -> None:
+    controller.command(fault)
+    refuses(controller.address, error, said)
+
+
+def test_a_second_driver_is_refused_and_the_first_goes_on(bench: Bench) -> None:
+    refuses(bench.controller.address, RobotNotReady, "Another program")
+    bench.robot.state()
+    bench.works_again()
+
+
+def test_what_was_switched_off_is_recovered_without_having_been_connected() -> None:
+    with ControllerProcess(joints_rad=HOME, speed_up=4.0, faults=["power off"]) as controller:
+        robot = driver(controller.address)
+        with pytest.raises(RobotNotReady):
+            robot.__enter__()
+        robot.recover()
+        robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(5)
+        np.testing.assert_allclose(Bench(controller, robot).joints(), HOME + 0.1, atol=1e-3)
+        robot.__exit__(None, None, None)
+
+
+def test_it_may_be_entered_again(controller: ControllerProcess) -> None:
+    robot = driver(controller.address, tool_voltage_v=24)
+    for _ in range(2):
+        with robot:
+            robot.stop()
+            assert robot.state().is_program_running
+        with pytest.raises(RobotLost, match="not connected"):
+            robot.state()

@@ -1,0 +1,180 @@
+"""What happens during a move: the arm stands, the error says why, nothing goes on, and recovery works."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from hardware.errors import (
+    EmergencyStop,
+    NotInRemoteControl,
+    ProgramStopped,
+    ProtectiveStop,
+    RobotError,
+    RobotLost,
+    RobotNotReady,
+    RobotStopped,
+    TrackingLost,
+)
+from hardware.robots.ur.gripper import ToolOutputGripper
+from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.hardware.robots.ur.bench import (
+    HOME,
+    NEAR,
+    STANDS_WITHIN_S,
+    Bench,
+    bent_way,
+    driver,
+    wait_until,
+)
+
+KINDS = pytest.mark.parametrize("kind", ["move_joints", "follow"])
+
+
+def stops_with(bench: Bench, kind: str, fault: str, error: type[RobotError], said: str) -> None:
+    """A fault in the middle of a move: the arm stands in time, who waits is told, further moves refused."""
+    move = bench.begin(kind)
+    bench.controller.command(fault)
+    began_s = time.monotonic()
+    assert bench.seconds_to_rest() < STANDS_WITHIN_S
+    with pytest.raises(error, match=said) as caught:
+        move.wait(5)
+    assert type(caught.value) is error
+    assert time.monotonic() - began_s < STANDS_WITHIN_S + 0.5
+    assert move.is_done
+    assert move.progress < 1
+    assert bench.stays_where_it_is(0.1)
+    here = bench.joints()
+    with pytest.raises(RobotError, match="recover"):
+        bench.robot.move_joints([here, HOME], 1.0, 1.0)
+    assert bench.stays_where_it_is(0.1)
+
+
+@KINDS
+def test_a_protective_stop(fast_bench: Bench, kind: str) -> None:
+    stops_with(fast_bench, kind, "protective stop", ProtectiveStop, r"protective stop; see what .* recover")
+    fast_bench.dashboard("unlock protective stop", "play")
+    assert fast_bench.stays_where_it_is(), "the old move is gone"
+    fast_bench.works_again()
+
+
+def test_an_emergency_stop(fast_bench: Bench) -> None:
+    bench = fast_bench
+    stops_with(bench, "follow", "emergency stop", EmergencyStop, r"emergency stop is pressed; .*release it")
+    with pytest.raises(EmergencyStop, match="is pressed"):
+        bench.robot.recover()
+    bench.controller.command("emergency release")
+    bench.works_again()
+
+
+@pytest.mark.parametrize(
+    ("kind", "fault"),
+    [("follow", "program stop"), ("move_joints", "program pause"), ("follow", "program pause")],
+)
+def test_a_program_that_is_stopped_or_paused(bench: Bench, kind: str, fault: str) -> None:
+    stops_with(bench, kind, fault, ProgramStopped, "was stopped or paused")
+    bench.dashboard("play")
+    assert bench.stays_where_it_is(), "the old move is gone"
+    bench.works_again()
+
+
+def test_a_safety_fault_is_for_the_panel(fast_bench: Bench) -> None:
+    bench = fast_bench
+    stops_with(bench, "move_joints", "safety fault", RobotNotReady, "'fault'.* panel")
+    with pytest.raises(RobotNotReady, match="panel"):
+        bench.robot.recover()
+    bench.dashboard("restart safety")
+    bench.works_again()
+
+
+def test_power_that_is_switched_off(fast_bench: Bench) -> None:
+    stops_with(fast_bench, "move_joints", "power off", RobotNotReady, "power")
+    fast_bench.works_again()
+
+
+@KINDS
+def test_a_joint_that_does_not_follow(bench: Bench, kind: str) -> None:
+    stops_with(bench, kind, "stick 1", TrackingLost, r"The base joint was \d\.\d degrees from")
+    bench.controller.command("unstick")
+    time.sleep(0.2)
+    bench.works_again()
+
+
+def test_local_control_is_named() -> None:
+    with (
+        ControllerProcess(version="5.11", joints_rad=HOME) as controller,
+        driver(controller.address) as robot,
+    ):
+        bench = Bench(controller, robot)
+        move = bench.begin("move_joints")
+        controller.command("local")
+        controller.command("program stop")
+        with pytest.raises(NotInRemoteControl, match="choose remote control"):
+            move.wait(5)
+        with pytest.raises(NotInRemoteControl, match="choose remote control"):
+            robot.recover()
+        controller.command("remote")
+        bench.works_again()
+
+
+@pytest.mark.parametrize(("kind", "fault"), [("move_joints", "link drop 1.5"), ("follow", "link silent 1.5")])
+def test_a_lost_link(bench: Bench, kind: str, fault: str) -> None:
+    move = bench.begin(kind)
+    began_s = time.monotonic()
+    bench.controller.command(fault)
+    with pytest.raises(RobotLost, match=r"look at the arm .* recover"):
+        move.wait(5)
+    assert time.monotonic() - began_s < 0.7
+    wait_until(lambda: not bench.is_moving(), STANDS_WITHIN_S)
+    with pytest.raises(RobotLost):
+        bench.robot.state()
+    with pytest.raises(RobotLost):
+        bench.robot.move_joints([HOME, NEAR], 1.0, 1.0)
+    with pytest.raises(RobotLost, match="press the emergency stop"):
+        bench.robot.stop()
+    time.sleep(max(began_s + 1.6 - time.monotonic(), 0))
+    bench.works_again()
+    gripper = ToolOutputGripper(bench.robot, 0, 0.0)
+    gripper.close()
+    assert bench.truth()["tool_outputs"] == [True, False]
+
+
+def test_a_link_that_is_lost_while_the_arm_stands_is_noticed(bench: Bench) -> None:
+    bench.controller.command("link drop 2")
+    time.sleep(0.6)
+    with pytest.raises(RobotLost, match="look at the arm"):
+        bench.robot.state()
+    with pytest.raises(RobotLost):
+        ToolOutputGripper(bench.robot, 0, 0.0).close()
+    with pytest.raises(RobotError):
+        bench.robot.recover()
+
+
+def test_a_slow_and_uneven_link_does_not_matter(bench: Bench) -> None:
+    bench.controller.command("latency 30 20")
+    way = bent_way()
+    bench.robot.follow(way).wait(20)
+    bench.robot.move_joints([NEAR, HOME], 1.0, 4.0).wait(20)
+    move = bench.begin("follow")
+    bench.robot.stop()
+    assert bench.seconds_to_rest() < STANDS_WITHIN_S
+    with pytest.raises(RobotStopped):
+        move.wait(1)
+
+
+def test_a_program_that_does_not_start_is_said_and_a_protective_stop_waits_for_its_time(
+    fast_bench: Bench,
+) -> None:
+    fast_bench.controller.command("protective stop")
+    began_s = fast_bench.truth()["time_s"]
+    wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
+    with pytest.raises(ProtectiveStop):
+        fast_bench.robot.move_joints([HOME, NEAR], 1.0, 1.0)
+    fast_bench.robot.recover()
+    assert fast_bench.truth()["time_s"] - began_s >= 5
+    fast_bench.controller.command("ignore uploads")
+    with pytest.raises(RobotNotReady, match="does not start"):
+        fast_bench.robot.recover()
+    fast_bench.controller.command("heed uploads")
+    fast_bench.works_again()

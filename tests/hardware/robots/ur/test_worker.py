@@ -1,0 +1,129 @@
+"""The worker process dies, freezes, or is left behind: it is noticed, the arm stands, and nothing remains."""
+
+from __future__ import annotations
+
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import psutil
+import pytest
+
+from hardware.errors import RobotError, RobotLost, RobotStopped
+from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.hardware.robots.ur.bench import HOME, STANDS_WITHIN_S, Bench, driver, wait_until
+
+NOTICED_WITHIN_S = 0.5
+SIGNALS = pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
+
+
+def worker_of(bench: Bench) -> int:
+    return bench.robot._connected().worker.process_id
+
+
+@SIGNALS
+@pytest.mark.parametrize("kind", ["move_joints", "follow"])
+def test_in_a_move_it_is_noticed_and_the_arm_stands(bench: Bench, number: int, kind: str) -> None:
+    move = bench.begin(kind)
+    worker = worker_of(bench)
+    began_s = time.monotonic()
+    os.kill(worker, number)
+    with pytest.raises(RobotLost, match="recover"):
+        move.wait(5)
+    assert time.monotonic() - began_s < NOTICED_WITHIN_S
+    wait_until(lambda: not bench.is_moving(), STANDS_WITHIN_S)
+    assert time.monotonic() - began_s < STANDS_WITHIN_S + 0.1
+    assert not psutil.pid_exists(worker)
+    assert bench.stays_where_it_is()
+    bench.works_again()
+
+
+@SIGNALS
+def test_the_watchdog_alone_makes_the_arm_stand(bench: Bench, number: int) -> None:
+    bench.begin("follow")
+    bench.robot._connected().dashboard.close()
+    os.kill(worker_of(bench), number)
+    assert bench.seconds_to_rest() < STANDS_WITHIN_S
+    assert "watchdog starved" in bench.controller.command("log")
+    bench.works_again()
+
+
+def test_a_standing_arm_whose_worker_froze_says_so(bench: Bench) -> None:
+    os.kill(worker_of(bench), signal.SIGSTOP)
+    time.sleep(NOTICED_WITHIN_S)
+    with pytest.raises(RobotLost):
+        bench.robot.state()
+    with pytest.raises(RobotLost):
+        bench.robot.set_tool_output(0, True)
+    bench.works_again()
+
+
+def test_a_stop_takes_the_second_path_and_says_so(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
+    move = bench.begin("follow")
+    os.kill(worker_of(bench), signal.SIGSTOP)
+    with caplog.at_level(logging.WARNING):
+        bench.robot.stop()
+    assert bench.seconds_to_rest() < 0.2
+    assert "through its dashboard" in caplog.text
+    with pytest.raises((RobotStopped, RobotLost)):
+        move.wait(1)
+    assert bench.stays_where_it_is()
+    bench.works_again()
+
+
+def test_leaving_stops_the_arm_and_leaves_nothing(controller: ControllerProcess) -> None:
+    threads = set(threading.enumerate())
+    with driver(controller.address) as robot:
+        bench = Bench(controller, robot)
+        move = bench.begin("move_joints")
+        worker = worker_of(bench)
+    assert not bench.is_moving()
+    assert not psutil.pid_exists(worker)
+    assert set(threading.enumerate()) <= threads
+    with pytest.raises(RobotError):
+        move.wait(0)
+
+
+def test_leaving_a_frozen_or_killed_worker_leaves_nothing(controller: ControllerProcess) -> None:
+    for number in (signal.SIGSTOP, signal.SIGKILL):
+        threads = set(threading.enumerate())
+        began_s = time.monotonic()
+        with driver(controller.address) as robot:
+            worker = worker_of(Bench(controller, robot))
+            os.kill(worker, number)
+        assert time.monotonic() - began_s < 4
+        assert not psutil.pid_exists(worker)
+        assert set(threading.enumerate()) <= threads
+
+
+def test_a_program_that_is_killed_takes_its_worker_along_and_the_arm_stands(
+    controller: ControllerProcess,
+) -> None:
+    program = subprocess.Popen(
+        [sys.executable, __file__, controller.address],
+        stdout=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    bench = Bench(controller, driver(controller.address))
+    assert program.stdout is not None
+    worker = int(program.stdout.readline())
+    wait_until(bench.is_moving)
+    began_s = time.monotonic()
+    program.kill()
+    program.communicate()
+    wait_until(lambda: not bench.is_moving(), 1)
+    assert time.monotonic() - began_s < STANDS_WITHIN_S + 0.1
+    wait_until(lambda: not psutil.pid_exists(worker), 2)
+    assert bench.stays_where_it_is()
+
+
+if __name__ == "__main__":
+    with driver(sys.argv[1]) as arm:
+        arm.move_joints([HOME, HOME + 2.0], 1.0, 4.0)
+        print(arm._connected().worker.process_id, flush=True)
+        time.sleep(60)
