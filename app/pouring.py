@@ -56,7 +56,13 @@ def prepare(pipeline: Pipeline, cell_file: Path | None) -> PourTask:
         StageError: the object is no open container.
         MotionError: the arm cannot take the cup at all.
     """
-    settings = _cell_of(pipeline.session, cell_file)
+    session = pipeline.session
+    if session.record("mesh") is not None:
+        raise InputError(
+            f"The session {session.path} holds a mesh, which stands in no cell; scan it first: 'poursight scan "
+            "--object MESH --session DIR' does so in the simulated cell."
+        )
+    settings = _cell_of(session, cell_file)
     cell = pour_cell(settings)
     imagination = pipeline.imagination()
     motions = pipeline.motion(cell, _described(settings))
@@ -125,7 +131,7 @@ def plan_lines(plan: PourPlan) -> list[str]:
     lines.append(
         f"What stays free: {plan.clearance_m * MM:.0f} mm between {plan.nearest[0]} and {plan.nearest[1]}; "
         f"{plan.cup_clearance_m * MM:.0f} mm around the cup. The pivot stays within "
-        f"{plan.pivot_error_m * MM:.2f} mm."
+        f"{plan.pivot_error_m * MM:.3f} mm."
     )
     return lines
 

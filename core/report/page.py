@@ -108,8 +108,9 @@ def _pour_data(content: ReportContent) -> dict[str, Any]:
 def _motion_data(content: ReportContent) -> dict[str, Any]:
     grid, motions = content.pours, content.motions
     if grid is None or motions is None:
-        return {"motion_said": None, "run_rows": run_rows(content.runs)}
+        return {"motion_said": None, "arm_decided": False, "run_rows": run_rows(content.runs)}
     return {
+        "arm_decided": motions.is_changed,
         "motion_said": motion_sentence(motions, grid),
         "motion_rows": motion_rows(motions, grid),
         "motion_reasons": motion_reasons(motions, grid),

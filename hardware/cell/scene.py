@@ -23,7 +23,7 @@ def motion_scene(cell: CellSettings) -> MotionScene:
     arm = ARMS[cell.robot.model]
     place = cell.place
     whole_box = axis_aligned_obstacle("object's box", place.crop_min_m, place.crop_max_m)
-    return MotionScene(arm, arm_shape(arm, _tools(cell)), [*_obstacles(cell), whole_box])
+    return MotionScene(arm, arm_shape(arm, _tools(cell)), _obstacles(cell, whole_box))
 
 
 def pour_cell(cell: CellSettings) -> PourCell:
@@ -50,7 +50,7 @@ def _tools(cell: CellSettings) -> tuple[Capsule, ...]:
     )
 
 
-def _obstacles(cell: CellSettings) -> list[Obstacle]:
+def _obstacles(cell: CellSettings, *on_platform: Obstacle) -> list[Obstacle]:
     place = cell.place
     top = place.table_height_m
     low, high = place.platform_min_m, place.platform_max_m
@@ -60,5 +60,6 @@ def _obstacles(cell: CellSettings) -> list[Obstacle]:
             "table", (-reach, -reach, top - _TABLE_DEPTH_M), (reach, reach, top), _STANDS_THERE
         ),
         axis_aligned_obstacle("platform", (*low, top), (*high, place.platform_height_m)),
+        *on_platform,
         *(axis_aligned_obstacle(box.name, box.min_m, box.max_m) for box in cell.obstacles),
     ]

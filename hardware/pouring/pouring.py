@@ -6,6 +6,7 @@ Between the steps a person decides; nothing here asks, and nothing goes on by it
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,10 +24,15 @@ from core.progress import Reporter
 from core.session import explained
 from core.session.pour_runs import next_run_folder
 from hardware.cell import Arm
+from hardware.errors import RobotError
+from hardware.pouring.measuring import driven_pivot_error_m
 from hardware.pouring.procedure import PourProcedure
 from hardware.pouring.run_log import RunLog
 
 PLAN_FOLDER = "plan"
+SENT_FILE = "controller.json"
+"""What a simulated controller received, the newest of it."""
+_NEWEST = 2000
 
 
 @dataclass(frozen=True)
@@ -129,6 +135,7 @@ class Pouring:
             )
             self.last_run = folder
             self._make(plan, plan.moves, log)
+            self._measure(plan, log)
         return folder
 
     def recover(self) -> None:
@@ -168,7 +175,22 @@ class Pouring:
             if procedure.current >= 0:
                 self._interrupted = plan, moves, procedure.current
             raise
+        finally:
+            self._keep_what_was_sent(log.folder)
         self._interrupted = None
+
+    def _measure(self, plan: PourPlan, log: RunLog) -> None:
+        cup, cell = self._target.pouring.cup, self._cell
+        error_m = driven_pivot_error_m(
+            log.folder, cell.arm, cell.T_flange_grasp @ plan.T_grasp_cup, cup, self._target.pivot_m
+        )
+        log.event("measured", f"The pivot stayed within {error_m * 1000:.2f} mm.", pivot_error_m=error_m)
+
+    def _keep_what_was_sent(self, folder: Path) -> None:
+        """A simulated controller remembers what it received; a real one keeps its own log."""
+        if self._arm.controller is not None:
+            with suppress(RobotError), explained(folder):
+                (folder / SENT_FILE).write_text(self._arm.controller.command(f"log {_NEWEST}") + "\n")
 
     def _refuse_outdated(self, fresh: FreshPlan) -> None:
         target, plan = self._target, fresh.plan

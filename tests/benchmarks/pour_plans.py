@@ -122,8 +122,8 @@ def _tell(name: str, judged: list[Judged]) -> None:
     nearest = min((one.clearance_m for one in judged if one.n_feasible), default=0.0)
     turn = max(one.longest_turn_s for one in judged)
     print(
-        f"{name:22} feasible of 24: {numbers}, directions: {directions}, judged in {times}, smallest clearance "
-        f"{nearest * 1000:.1f} mm, longest turn {turn:.2f} s",
+        f"{name:22} feasible of 24: {numbers}, directions: {directions}, judged in {times}, smallest "
+        f"clearance {nearest * 1000:.1f} mm, longest turn {turn:.2f} s",
         flush=True,
     )
     for pose, one in enumerate(judged):
@@ -136,9 +136,9 @@ def _summarize(judged: list[Judged]) -> None:
     times = [one.took_s for one in judged]
     mean = np.mean([one.n_feasible for one in judged])
     print(
-        f"{n_fine} of {len(judged)} placed objects have a feasible pour, {mean:.1f} of 24 on average; judging "
-        f"took {np.median(times):.2f} s (median), {np.percentile(times, 95):.2f} s (95 %), {max(times):.2f} s "
-        "(most)"
+        f"{n_fine} of {len(judged)} placed objects have a feasible pour, {mean:.1f} of 24 on average; "
+        f"judging took {np.median(times):.2f} s (median), {np.percentile(times, 95):.2f} s (95 %), "
+        f"{max(times):.2f} s (most)"
     )
 
 

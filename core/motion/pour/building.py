@@ -6,12 +6,12 @@ import numpy as np
 
 from core.geometry import FloatArray
 from core.imagination.cup import pour_angle
-from core.motion.pour.geometry import laying_grasps, turned_cups
 from core.motion.pour.legs import ToolLeg, joined, standing
 from core.motion.pour.plan import MOVES, PlannedMove
 from core.motion.pour.scene import PourScene
 from core.motion.pour.search import Way, lay_grasps
 from core.motion.pour.timing import SpeedLimits
+from core.motion.pour.turns import turn_grasps
 from core.motion.trajectory import JointTrajectory
 from core.parameters.imagination import PouringParameters
 
@@ -34,7 +34,7 @@ def build_moves(scene: PourScene, pouring: PouringParameters, way: Way) -> tuple
     carry = joined(stretches) if stretches else standing(here, 0.0)
     lay = _lay(pouring, way).trajectory(scene, branch, carry.end_rad, slow)
     lower = _lower(pouring, way).trajectory(scene, branch, lay.end_rad, slow)
-    turn = turn_leg(scene, pouring, way).trajectory(
+    turn = _turn_leg(scene, pouring, way).trajectory(
         scene, branch, lower.end_rad, SpeedLimits.in_the_turn(scene.cell.limits)
     )
     pour = joined([standing(turn.start_rad, pouring.settle_s), turn, standing(turn.end_rad, pouring.wait_s)])
@@ -71,15 +71,11 @@ def _lower(pouring: PouringParameters, way: Way) -> ToolLeg:
     return ToolLeg.of_length(poses, float(np.linalg.norm(down)), 0.0)
 
 
-def turn_leg(scene: PourScene, pouring: PouringParameters, way: Way) -> ToolLeg:
+def _turn_leg(scene: PourScene, pouring: PouringParameters, way: Way) -> ToolLeg:
     """The turn about the pivot; its places are the pour angle gamma, its top rate the imagined one."""
-    task, grip_m = way.task, scene.cell.grip_height_m
 
     def poses(gammas: FloatArray) -> FloatArray:
-        cups = turned_cups(pouring.cup, task.pivot_m, task.theta_rad, gammas)
-        psi = np.full(len(gammas), way.turn.psi_rad)
-        positions = cups[:, :3, 3] + grip_m * cups[:, :3, 2]
-        return laying_grasps(pouring.cup, task.theta_rad, gammas, psi, positions)
+        return turn_grasps(scene, pouring.cup, way.task, way.turn.psi_rad, gammas)
 
     gammas = np.linspace(0, pouring.gamma_0_rad, _TURN_PLACES + 1)
     return ToolLeg(poses, gammas, imagined_rate(pouring, gammas))

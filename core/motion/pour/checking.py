@@ -136,15 +136,14 @@ def _check_speeds(scene: PourScene, move: PlannedMove) -> None:
     is_turn = move.name in _TURNING
     limits = SpeedLimits.in_the_turn(settings) if is_turn else SpeedLimits.on_the_way(settings)
     steps = np.diff(joints, axis=0)
-    tool = scene.grasp_poses(joints)
-    ends = scene.cup_ends(tool)
+    points = scene.hand_points(scene.grasp_poses(joints))
     acceleration = acceleration_rad_s2(move.trajectory)
     measured = (
         ("a joint turns with", np.abs(steps).max() / SAMPLE_S, limits.joint_speed_rad_s, "rad/s"),
         ("a joint speeds up by", acceleration, limits.joint_acceleration_rad_s2, "rad/s²"),
-        ("the hand moves with", _longest(tool[:, :3, 3]) / SAMPLE_S, limits.tool_speed_m_s, "m/s"),
+        ("the hand moves with", _longest(points[:, :1]) / SAMPLE_S, limits.tool_speed_m_s, "m/s"),
         ("two samples of a joint differ by", np.abs(steps).max(), STEP_RAD, "rad"),
-        ("the cup leaps by", max(_longest(ends[:, k]) for k in range(ends.shape[1])), STEP_M, "m"),
+        ("the cup leaps by", _longest(points), STEP_M, "m"),
     )
     for what, value, limit, unit in measured:
         if not value <= limit * _ROUNDING:
@@ -154,8 +153,8 @@ def _check_speeds(scene: PourScene, move: PlannedMove) -> None:
 
 
 def _longest(points_m: FloatArray) -> float:
-    """The longest step between points (N, 3)."""
-    return float(np.linalg.norm(np.diff(points_m, axis=0), axis=1).max(initial=0))
+    """The longest step of points (N, P, 3)."""
+    return float(np.linalg.norm(np.diff(points_m, axis=0), axis=2).max(initial=0))
 
 
 def _check_branch(scene: PourScene, moves: Sequence[PlannedMove]) -> float:

@@ -16,15 +16,17 @@ from core.geometry import BoolArray, FloatArray, IntArray
 from core.motion.inverse_kinematics import inverse_kinematics
 from core.motion.kinematics import TURN_RAD, singularity_measure
 from core.motion.pour.geometry import upright_grasps
-from core.motion.pour.scene import PourScene
+from core.motion.pour.scene import PourScene, too_near
 
-_N_ANGLES = 24
+_N_ANGLES, _N_AZIMUTHS = 16, 12
+"""24 and 24 take longer and find fewer pours: the places that are tried first then lie too near together."""
 _ANGLES_RAD = np.arange(_N_ANGLES) * TURN_RAD / _N_ANGLES
+_AZIMUTHS_RAD = np.arange(_N_AZIMUTHS) * TURN_RAD / _N_AZIMUTHS
 _RADII_M = np.arange(0.2, 0.86, 0.08)
 _OVER_M = 0.02
 """Between the object's top and the lowest point of the cup however it tilts."""
 _HIGHER_M = np.array([0.0, 0.1])
-_METRE_COST_RAD = 6.0
+METRE_COST_RAD = 6.0
 """A way of a metre costs as much as turning the hand by this."""
 
 _SLACK_M, _SINGULARITY_SHARE = 0.001, 1.2
@@ -58,7 +60,12 @@ class Lattice:
         return np.asarray(self.places[:, 0] + self.places[:, 3])
 
     def ways_from(self, nodes: IntArray) -> tuple[FloatArray, IntArray]:
-        """Cost (U,) of the best way from one of some nodes to each, and the node before each on it."""
+        """Cost (U,) of the best way from one of some nodes to each, inf where there is none, and the node
+        before each on it.
+        """
+        if not len(nodes):
+            n = len(self.places)
+            return np.full(n, np.inf), np.full(n, -1)
         cost, before, _ = dijkstra(self.net, False, nodes, True, min_only=True)
         return cost, before.astype(np.int64)
 
@@ -88,12 +95,12 @@ def safe_height_m(scene: PourScene) -> float:
 def find_lattice(scene: PourScene, branch: int) -> Lattice:
     """Look at all places of a branch, at two heights over the object."""
     heights = safe_height_m(scene) + _HIGHER_M
-    axes = _ANGLES_RAD, _RADII_M, heights, _ANGLES_RAD
+    axes = _ANGLES_RAD, _RADII_M, heights, _AZIMUTHS_RAD
     places = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
     shape = places.shape[:-1]
     # whatever the arm can reach in one direction it can in all: only joint 1 differs
     reach = _is_reached(scene, branch, places[0].reshape(-1, 4)).reshape(shape[1:])
-    clear = np.broadcast_to(reach, shape).copy()
+    clear: BoolArray = np.array(np.broadcast_to(reach, shape), dtype=bool)
     ok, joints = _clear(scene, branch, place_grasps(places[clear]))
     clear[clear] = ok
     return Lattice(branch, places[clear], _net(scene, branch, places, clear, joints[ok]))
@@ -105,8 +112,26 @@ def clear_ways(scene: PourScene, branch: int, T_base_grasp: FloatArray) -> BoolA
     """
     shape = T_base_grasp.shape[:2]
     ok, joints = _clear(scene, branch, T_base_grasp.reshape(-1, 4, 4))
-    clear: BoolArray = ok.reshape(shape).all(axis=1)
-    return clear & _are_even(joints.reshape(*shape, 6))
+    are_clear: BoolArray = np.asarray(ok.reshape(shape).all(axis=1), dtype=bool)
+    return are_clear & _are_even(joints.reshape(*shape, 6))
+
+
+def why_not(scene: PourScene, branch: int, T_base_grasp: FloatArray, name: str) -> str:
+    """Say in a sentence why a way through poses (K, 4, 4) is not clear, for a move of this name."""
+    limits, arm = scene.cell.limits, scene.cell.arm
+    result = inverse_kinematics(arm, scene.flange_poses(T_base_grasp), (branch,))
+    joints = result.joints_rad[:, 0]
+    if not result.found.all():
+        return f"In the move '{name}' the hand would leave the arm's reach."
+    room = scene.hand.clearance(joints)
+    k = int(room.distance_m.argmin())
+    if room.distance_m[k] < limits.min_clearance_m + _SLACK_M:
+        return too_near(name, room.nearest(k), float(room.distance_m[k]), limits.min_clearance_m)
+    around = scene.cup_clearance(scene.held_cups(joints), joints)
+    k = int(around.distance_m.argmin())
+    if around.distance_m[k] < limits.cup_clearance_m:
+        return too_near(name, around.nearest(k), float(around.distance_m[k]), limits.cup_clearance_m)
+    return f"In the move '{name}' the arm would come too near to a singular configuration."
 
 
 def _are_even(joints_rad: FloatArray) -> BoolArray:
@@ -168,9 +193,9 @@ def _net(
 
 
 _STEP_COSTS = (
-    _METRE_COST_RAD * 0.5 * TURN_RAD / _N_ANGLES,
-    _METRE_COST_RAD * 0.08,
-    _METRE_COST_RAD * 0.1,
-    TURN_RAD / _N_ANGLES,
+    METRE_COST_RAD * 0.5 * TURN_RAD / _N_ANGLES,
+    METRE_COST_RAD * 0.08,
+    METRE_COST_RAD * 0.1,
+    TURN_RAD / _N_AZIMUTHS,
 )
 """Of a step in angle (at half a metre), radius, height and azimuth."""

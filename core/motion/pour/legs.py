@@ -11,7 +11,6 @@ import numpy as np
 from core.errors import MotionError
 from core.geometry import FloatArray
 from core.motion.inverse_kinematics import inverse_kinematics
-from core.motion.joint_path import sample_move
 from core.motion.kinematics import TURN_RAD
 from core.motion.pour.scene import PourScene
 from core.motion.pour.timing import SpeedLimits, timed_places
@@ -21,6 +20,7 @@ Poses = Callable[[FloatArray], FloatArray]
 """From places (N,) along a way to `T_base_grasp` (N, 4, 4)."""
 _PLACE_RAD, _PLACE_M = np.radians(0.5), 0.0025
 _FEWEST_PLACES = 16
+_SAME_RAD = 1e-9
 _MOST_STEP_RAD = np.radians(5.0)
 """No joint turns more between two places; ten times as much as the hand."""
 _TRIES = 5
@@ -34,7 +34,7 @@ class ToolLeg:
 
     Attributes:
         poses: of the tool frame at places along the way.
-        places: (K,) rising, near enough to each other for a smooth interpolation.
+        places: (K,) rising, so near to each other that slopes and bends can be told from them.
         top_rate: (K,) highest rate in places per second, or none.
     """
 
@@ -54,15 +54,16 @@ class ToolLeg:
         """Follow it from the configuration (6,) at its beginning.
 
         Raises:
-            MotionError: a place is out of reach.
+            MotionError: a place is out of reach, or the way passes a singular configuration.
         """
         poses = self.poses(self.places)
         joints = continued(branch_joints(scene, branch, poses), start_rad)
         if np.abs(np.diff(joints, axis=0)).max() > _MOST_STEP_RAD:
-            raise MotionError("On the way of the hand the arm would fling round a singular configuration.")
+            raise MotionError("Between two places the arm would fling round a singular configuration.")
+        points = scene.hand_points(poses)
         slower = limits
         for _ in range(_TRIES):
-            places = timed_places(self.places, joints, poses[:, :3, 3], slower, self.top_rate)
+            places = timed_places(self.places, joints, points, slower, self.top_rate)
             exact = branch_joints(scene, branch, self.poses(places))
             near = np.stack([np.interp(places, self.places, column) for column in joints.T], axis=1)
             result = trajectory_of(exact + TURN_RAD * np.round((near - exact) / TURN_RAD))
@@ -95,12 +96,13 @@ def joint_trajectory(scene: PourScene, corners_rad: FloatArray, limits: SpeedLim
     """Straight joint moves through configurations (M, 6), at rest at each."""
     parts = []
     for start, goal in pairwise(corners_rad):
-        samples = sample_move(start, goal)
-        if len(samples) < 2:
+        length_rad = float(np.abs(goal - start).max())
+        if length_rad < _SAME_RAD:
             continue
-        shares = np.linspace(0, 1, len(samples))
-        tool_m = scene.grasp_poses(samples)[:, :3, 3]
-        places = timed_places(shares, samples, tool_m, limits)
+        shares = np.linspace(0, 1, max(int(length_rad / _PLACE_RAD), _FEWEST_PLACES) + 1)
+        samples = start + shares[:, None] * (goal - start)
+        points = scene.hand_points(scene.grasp_poses(samples))
+        places = timed_places(shares, samples, points, limits)
         parts.append(trajectory_of(start + places[:, None] * (goal - start)))
     return joined(parts) if parts else standing(corners_rad[0], 0.0)
 

@@ -14,8 +14,9 @@ from core.motion.pour.checking import check_plan, examine
 from core.motion.pour.geometry import grasp_of_cup
 from core.motion.pour.plan import PourFeasibility, PourPlan
 from core.motion.pour.scene import PourScene
-from core.motion.pour.search import PourTask, Reasons, WaySearch
+from core.motion.pour.search import WaySearch
 from core.motion.pour.station import Grip, find_grips
+from core.motion.pour.turns import FINE, PourTask, Reasons
 from core.parameters.imagination import PouringParameters
 from core.progress import Reporter
 from core.workers import Task, WorkerPool, report_fraction
@@ -137,7 +138,7 @@ def _plan(search: WaySearch, pour: PourTask) -> PourPlan:
                 search.scene, pouring, moves, T_grasp_cup, pour.pivot_m, pour.theta_rad, way.grip.room
             )
         except MotionError as error:
-            reasons.add(7, str(error))
+            reasons.add(FINE, str(error))
             n_built += 1
             if n_built == _MOST_BUILT:
                 break

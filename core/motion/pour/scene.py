@@ -62,14 +62,14 @@ class PourScene:
         """`T_base_cup` (N, 4, 4) of the cup in the hand, but for its angle about its axis."""
         return self.grasp_poses(joints_rad) @ make_pose(np.eye(3), (0, 0, -self.cell.grip_height_m))
 
-    def cup_ends(self, T_base_grasp: FloatArray) -> FloatArray:
-        """Points (N, 9, 3) of the cup in the hand that move the most: the middle of its base, and four on
-        either rim.
+    def hand_points(self, T_base_grasp: FloatArray) -> FloatArray:
+        """The tool frame's origin and eight points (N, 9, 3) on the held cup's rims: no point of it moves
+        much farther than one of these.
         """
         low, high, grip = self.cone.low_radius_m, self.cone.high_radius_m, self.cell.grip_height_m
         around = np.array([[1.0, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0]])
         base, mouth = np.array([0, 0, -grip]), np.array([0, 0, self.cone.height_m - grip])
-        points = np.concatenate([base[None], base + low * around, mouth + high * around])
+        points = np.concatenate([np.zeros((1, 3)), base + low * around, mouth + high * around])
         return points @ np.swapaxes(T_base_grasp[:, :3, :3], 1, 2) + T_base_grasp[:, None, :3, 3]
 
     def cup_to_boxes(self, T_base_cup: FloatArray, exact_below_m: float = EXACT_BELOW_M) -> FloatArray:
@@ -108,8 +108,8 @@ class PourScene:
         ignored: frozenset[str] = frozenset(),
         exact_below_m: float = EXACT_BELOW_M,
     ) -> Clearance:
-        """Smallest distance of cups (N, 4, 4), or of one (1, 4, 4), to the arm at configurations (N, 6) and to
-        all boxes but the ignored ones.
+        """Smallest distance of cups (N, 4, 4), or of one (1, 4, 4), to the arm at configurations (N, 6) and
+        to all boxes but the ignored ones.
         """
         kept = [k for k, box in enumerate(self.obstacles) if box.name not in ignored]
         to_boxes = self.cup_to_boxes(T_base_cup, exact_below_m)[:, kept]
@@ -132,8 +132,8 @@ def too_near(where: str, pair: tuple[str, str], distance_m: float, wanted_m: flo
     """Say in a sentence what comes too near to what, and by how much."""
     first, second = pair
     if distance_m <= 0:
-        return f"In the move '{where}' the {first} would run into the {second}."
+        return f"In the move '{where}' {first} and {second} would touch."
     return (
-        f"In the move '{where}' the {first} would come to {distance_m * 1000:.0f} mm of the {second}, "
-        f"where {wanted_m * 1000:.0f} mm must stay."
+        f"In the move '{where}' {first} and {second} would come to {distance_m * 1000:.1f} mm of each other, "
+        f"where {wanted_m * 1000:g} mm must stay."
     )

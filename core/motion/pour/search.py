@@ -7,68 +7,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.geometry import BoolArray, FloatArray, IntArray
-from core.motion.inverse_kinematics import inverse_kinematics
-from core.motion.kinematics import singularity_measure
+from core.geometry import FloatArray, IntArray
 from core.motion.pour.carrying import Carry, Carrying
-from core.motion.pour.geometry import (
-    hand_angle_rad,
-    laying_grasps,
-    turned_cups,
-    upright_azimuth_rad,
-    upright_rad,
-)
-from core.motion.pour.lattice import Lattice, clear_ways, find_lattice, safe_height_m
-from core.motion.pour.scene import PourScene, too_near
+from core.motion.pour.geometry import laying_grasps, upright_azimuth_rad, upright_rad
+from core.motion.pour.lattice import METRE_COST_RAD, Lattice, clear_ways, find_lattice, safe_height_m, why_not
+from core.motion.pour.scene import PourScene
 from core.motion.pour.station import Grip
+from core.motion.pour.turns import CARRY, LAY, NOWHERE, PourTask, Reasons, Turn, find_turns, turn_grasps
 from core.parameters.imagination import PouringParameters
 
-_STEP_RAD = np.pi / 12
-_N_PSI = 24
-_TURN_PLACES = 6
-_LAY = np.linspace(0, 1, 8)
-"""Shares of the way of laying the cup that are looked at first."""
-_CLEARLY = " without coming too near to something or to a singular configuration."
+_LAY_SHARES = np.linspace(0, 1, 8)
+"""Places on the way of laying the cup that are looked at first."""
 _LAYS = 24, 120
-"""Places tried for laying the cup: the first few, and this many if none of them will do."""
+"""Upright places tried for laying the cup: the first few, and this many if none of them will do."""
 _LOWER_M = 0.03
 """The cup is laid at least this far above where the pour begins."""
-_METRE_COST_RAD = 6.0
-"""A way of a metre costs as much as turning the hand by this."""
 _LAY_COST_RAD = 8.0
-"""Places that are farther off than this are not tried for laying the cup."""
+"""Upright places that are farther off than this are not tried."""
 _CARRY_SHARE = 0.3
 """What a longer way to there counts against a longer way of laying, where the cup tilts."""
-
-
-@dataclass(frozen=True)
-class PourTask:
-    """One of the imagined pours.
-
-    Attributes:
-        i: index of its direction.
-        j: index of its distance.
-        theta_rad: the direction, against the base frame's x-axis.
-        pivot_m: (3,) in the base frame.
-    """
-
-    i: int
-    j: int
-    theta_rad: float
-    pivot_m: FloatArray
-
-
-@dataclass(frozen=True)
-class Turn:
-    """A way to hold the cup in the pour.
-
-    Attributes:
-        psi_rad: how the cup sits in the hand.
-        branch: of the inverse kinematics.
-    """
-
-    psi_rad: float
-    branch: int
 
 
 @dataclass(frozen=True)
@@ -96,24 +53,6 @@ class Way:
     initial_m: FloatArray
 
 
-@dataclass
-class Reasons:
-    """Why there is no way: the sentence of the attempt that came farthest.
-
-    Attributes:
-        stage: how far it came.
-        sentence: why it went no farther.
-    """
-
-    stage: int = -1
-    sentence: str = ""
-
-    def add(self, stage: int, sentence: str) -> None:
-        """Keep a sentence if no other attempt came this far."""
-        if stage > self.stage:
-            self.stage, self.sentence = stage, sentence
-
-
 class WaySearch:
     """Finds ways for the pours onto one object; what several pours ask is answered once."""
 
@@ -127,97 +66,54 @@ class WaySearch:
 
     def ways(self, task: PourTask, reasons: Reasons) -> Iterator[Way]:
         """Yield ways that are clear at some places along them, the best first."""
-        for turn in self._turns(task, reasons):
+        branches = sorted({grip.branch for grip in self._grips})
+        for turn in find_turns(self.scene, self.pouring, task, branches, reasons):
             yield from self._ways_to(task, turn, reasons)
 
-    def _turns(self, task: PourTask, reasons: Reasons) -> list[Turn]:
-        """How the cup may be held in the pour: the hand opposite to the pivot first."""
-        scene = self.scene
-        gammas = np.linspace(0, self.pouring.gamma_0_rad, _TURN_PLACES)
-        offsets = _STEP_RAD * np.array([(k + 1) // 2 * (1 if k % 2 else -1) for k in range(_N_PSI)])
-        psis = hand_angle_rad(scene.cell.T_flange_grasp) + offsets
-        poses = np.concatenate([self._turn_grasps(task, float(psi), gammas) for psi in psis])
-        branches = sorted({grip.branch for grip in self._grips})
-        result = inverse_kinematics(scene.cell.arm, scene.flange_poses(poses), branches)
-        shape = _N_PSI, _TURN_PLACES, len(branches)
-        reached = (result.found & ~result.undetermined).reshape(shape).all(axis=1)
-        if not reached.any():
-            reasons.add(0, "The arm cannot reach this pour with the hand on any side of the cup.")
-            return []
-        which: IntArray = np.argwhere(reached)
-        joints = result.joints_rad.reshape(*shape, 6).transpose(0, 2, 1, 3)[reached]
-        fine = self._clear_turns(joints, reasons)
-        if not fine.any():
-            return []
-        return [Turn(float(psis[k]), branches[b]) for k, b in which[fine]]
-
-    def _turn_grasps(self, task: PourTask, psi_rad: float, gammas: FloatArray) -> FloatArray:
-        cups = turned_cups(self.pouring.cup, task.pivot_m, task.theta_rad, gammas)
-        axis = cups[:, :3, 2] * self.scene.cell.grip_height_m
-        psi = np.full(len(gammas), psi_rad)
-        return laying_grasps(self.pouring.cup, task.theta_rad, gammas, psi, cups[:, :3, 3] + axis)
-
-    def _clear_turns(self, joints: FloatArray, reasons: Reasons) -> BoolArray:
-        """Which turns (C, K, 6) are clear and not singular."""
-        scene, limits, shape = self.scene, self.scene.cell.limits, joints.shape[:2]
-        bent: BoolArray = singularity_measure(scene.cell.arm, joints).min(axis=1) >= limits.min_singularity
-        if not bent.any():
-            reasons.add(1, "In the pour the arm would be too near to a singular configuration.")
-            return bent
-        flat = joints.reshape(-1, 6)
-        room = scene.hand.clearance(flat)
-        hand = np.where(bent[:, None], room.distance_m.reshape(shape), -1.0)
-        fine: BoolArray = hand.min(axis=1) >= limits.min_clearance_m
-        if not fine.any():
-            best = int(hand.min(axis=1).argmax())
-            worst = best * shape[1] + int(hand[best].argmin())
-            distance = float(room.distance_m[worst])
-            reasons.add(2, too_near("pour", room.nearest(worst), distance, limits.min_clearance_m))
-            return fine
-        held = joints[fine].reshape(-1, 6)
-        cup = scene.cup_clearance(scene.held_cups(held), held)
-        around = cup.distance_m.reshape(-1, shape[1]).min(axis=1)
-        if around.max() < limits.cup_clearance_m:
-            worst = int(around.argmax()) * shape[1]
-            worst += int(cup.distance_m[worst : worst + shape[1]].argmin())
-            distance = float(cup.distance_m[worst])
-            reasons.add(3, too_near("pour", cup.nearest(worst), distance, limits.cup_clearance_m))
-        fine[fine] = around >= limits.cup_clearance_m
-        return fine
-
     def _ways_to(self, task: PourTask, turn: Turn, reasons: Reasons) -> Iterator[Way]:
-        initial = self._turn_grasps(task, turn.psi_rad, np.zeros(1))[0, :3, 3]
+        initial = turn_grasps(self.scene, self.pouring.cup, task, turn.psi_rad, np.zeros(1))[0, :3, 3]
         ready = initial.copy()
         ready[2] = max(ready[2] + _LOWER_M, safe_height_m(self.scene))
         lattice, carryings = self._carried(turn.branch)
-        straight = upright_azimuth_rad(task.theta_rad, turn.psi_rad)
-        spins = (straight - lattice.azimuths_rad + np.pi) % (2 * np.pi) - np.pi
-        lay_cost = np.abs(spins) + _METRE_COST_RAD * np.linalg.norm(lattice.positions_m - ready, axis=1)
-        carry_cost = np.min([carrying.cost_rad for carrying in carryings], axis=0)
-        cost = np.where(lay_cost < _LAY_COST_RAD, lay_cost + _CARRY_SHARE * carry_cost, np.inf)
-        nearest = np.argsort(cost, kind="stable")[: _LAYS[1]]
-        nearest = nearest[np.isfinite(cost[nearest])]
-        if not len(nearest):
-            reasons.add(4, "The arm cannot bring the upright cup anywhere near this pour.")
-            return
-        clear = np.zeros(0, dtype=bool)
-        for some in (nearest[: _LAYS[0]], nearest[_LAYS[0] :]):
-            if len(some) and not clear.any():
-                ways = [
-                    lay_grasps(self.pouring, task, turn, lattice.positions_m[k], spins[k], ready, _LAY)
-                    for k in some
-                ]
-                clear, nearest = clear_ways(self.scene, turn.branch, np.array(ways)), some
-        if not clear.any():
-            reasons.add(5, f"The arm cannot lay the cup down for this pour{_CLEARLY}")
-        for k in nearest[clear]:
+        spins = upright_azimuth_rad(task.theta_rad, turn.psi_rad) - lattice.azimuths_rad
+        spins = (spins + np.pi) % (2 * np.pi) - np.pi
+        for k in self._layable(task, turn, spins, ready, reasons):
             for carrying in carryings:
-                carry = carrying.to(int(k)) if np.isfinite(carrying.cost_rad[k]) else None
+                carry = carrying.to(k) if np.isfinite(carrying.cost_rad[k]) else None
                 if carry is None:
-                    reasons.add(6, f"The arm cannot carry the upright cup to this pour{_CLEARLY}")
+                    reasons.add(CARRY, "The arm found no clear way to carry the upright cup to this pour.")
                     continue
                 place, spin = lattice.positions_m[k], float(spins[k])
                 yield Way(task, turn, carrying.grip, carry, place, spin, ready, initial)
+
+    def _layable(
+        self, task: PourTask, turn: Turn, spins_rad: FloatArray, ready_m: FloatArray, reasons: Reasons
+    ) -> Iterator[int]:
+        """Upright places from which the cup can be laid above a pour: those of the first batch with any."""
+        lattice, carryings = self._carried(turn.branch)
+        positions = lattice.positions_m
+        cost = np.abs(spins_rad) + METRE_COST_RAD * np.linalg.norm(positions - ready_m, axis=1)
+        too_far = cost > _LAY_COST_RAD
+        cost += _CARRY_SHARE * np.min([carrying.cost_rad for carrying in carryings], axis=0)
+        cost[too_far] = np.inf
+        nearest: IntArray = np.argsort(cost, kind="stable")[: _LAYS[1]]
+        nearest = nearest[np.isfinite(cost[nearest])]
+        if not len(nearest):
+            reasons.add(
+                NOWHERE, "The arm found no clear way to bring the upright cup anywhere near this pour."
+            )
+            return
+        for batch in (nearest[: _LAYS[0]], nearest[_LAYS[0] :]):
+            ways = [
+                lay_grasps(self.pouring, task, turn, positions[k], spins_rad[k], ready_m, _LAY_SHARES)
+                for k in batch
+            ]
+            clear = clear_ways(self.scene, turn.branch, np.array(ways).reshape(-1, len(_LAY_SHARES), 4, 4))
+            if clear.any():
+                yield from batch[clear].tolist()
+                return
+            if reasons.stage < LAY:
+                reasons.add(LAY, why_not(self.scene, turn.branch, ways[0], "lay"))
 
     def _carried(self, branch: int) -> tuple[Lattice, list[Carrying]]:
         """Where a branch may hold the cup upright, and the ways to there from each of its grips."""

@@ -51,7 +51,7 @@ class SpeedLimits:
 def timed_places(
     places: FloatArray,
     joints_rad: FloatArray,
-    tool_m: FloatArray,
+    points_m: FloatArray,
     limits: SpeedLimits,
     top_rate: FloatArray | None = None,
 ) -> FloatArray:
@@ -64,18 +64,20 @@ def timed_places(
     Args:
         places: (K,) rising, in any unit.
         joints_rad: (K, 6) configurations at the places, near to each other.
-        tool_m: (K, 3) the tool frame's origin there.
+        points_m: (K, P, 3) the tool frame's origin there, and further points of the hand.
         limits: of joints and tool.
         top_rate: (K,) highest rate in places per second; none if nothing but the limits counts.
     """
     slopes = np.abs(np.gradient(joints_rad, places, axis=0))
     bends = np.abs(np.gradient(np.gradient(joints_rad, places, axis=0), places, axis=0))
-    tool_slope = np.linalg.norm(np.gradient(tool_m, places, axis=0), axis=1)
+    point_slopes = np.linalg.norm(np.gradient(points_m, places, axis=0), axis=2)
     # never so fast that two samples are farther apart than what was checked between
     joint_speed = _SHARE * min(limits.joint_speed_rad_s, STEP_RAD / SAMPLE_S)
-    tool_speed = _SHARE * min(limits.tool_speed_m_s, STEP_M / SAMPLE_S)
+    tool_speed, point_speed = _SHARE * limits.tool_speed_m_s, _SHARE * STEP_M / SAMPLE_S
     acceleration = _SHARE * limits.joint_acceleration_rad_s2
-    top = np.minimum(joint_speed / np.maximum(slopes.max(axis=1), _TINY), tool_speed / (tool_slope + _TINY))
+    top = joint_speed / np.maximum(slopes.max(axis=1), _TINY)
+    top = np.minimum(top, tool_speed / np.maximum(point_slopes[:, 0], _TINY))
+    top = np.minimum(top, point_speed / np.maximum(point_slopes.max(axis=1), _TINY))
     # half of the acceleration is kept for changing the rate
     top = np.minimum(top, np.sqrt(0.5 * acceleration / np.maximum(bends.max(axis=1), _TINY)))
     if top_rate is not None:

@@ -22,7 +22,6 @@ FIELDS = np.dtype(
         ("joint_speeds_rad_s", "f8", 6),
         ("tool_pose", "f8", 6),
         ("speed_scaling", "f8"),
-        ("payload_kg", "f8"),
         ("robot_mode", "i8"),
         ("safety_mode", "i8"),
         ("runtime_state", "i8"),

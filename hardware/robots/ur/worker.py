@@ -242,7 +242,6 @@ class _Worker:
             raw["joint_speeds_rad_s"] = receive.getActualQd()
             raw["tool_pose"] = receive.getActualTCPPose()
             raw["speed_scaling"] = receive.getSpeedScalingCombined()
-            raw["payload_kg"] = receive.getPayload()
             raw["robot_mode"] = receive.getRobotMode()
             raw["safety_mode"] = receive.getSafetyMode()
             raw["runtime_state"] = receive.getRuntimeState()

@@ -137,10 +137,15 @@ class Arm:
         return self.target_rad, self.target_speeds_rad_s
 
     def _follow(self, dt_s: float) -> None:
-        """The joints are where they shall be, except stuck ones and those that were stuck a moment ago."""
+        """The joints are where they shall be, except stuck ones and those that were stuck a moment ago.
+
+        Once the motion is over a joint that is elsewhere stays there: nothing leaps when it comes free.
+        """
         reach = np.array(self.model.speed_limits_rad_s) * dt_s * 1.01
         reach[list(self.stuck)] = 0.0
         step = np.clip(self.target_rad - self.joints_rad, -reach, reach)
         is_exact = not self.stuck and np.array_equal(self.joints_rad + step, self.target_rad)
         self.joints_rad = self.target_rad if is_exact else self.joints_rad + step
         self.speeds_rad_s = step / dt_s if step.any() else np.zeros(6)
+        if self.is_idle and self.stuck:
+            self.target_rad = self.joints_rad

@@ -85,11 +85,11 @@ class Controller:
         self._advance_power()
 
     def upload(self, script: str) -> None:
-        """Take a script; a new one replaces the old one."""
+        """Take a script; it replaces the old one, unless it is a secondary program, which runs beside it."""
         is_control = CONTROL_SCRIPT_MARK in script
         taken = self._takes_scripts()
         self.journal.note("script", size=len(script), is_control_script=is_control, is_taken=taken)
-        if not taken:
+        if not taken or script.lstrip().startswith("sec "):
             return
         self._end_program()
         if is_control:

@@ -29,6 +29,7 @@ from hardware.simulation.ur_controller.script_server import ScriptLink
 
 _ADDRESS_TRIES = 50
 _LARGEST_LAG_S = 1.0
+_LATE_S = 0.02
 """Beyond this much wall time, as after a suspended machine, what was missed is left out."""
 
 
@@ -151,6 +152,8 @@ class ControllerServer:
             if due * period_s > _LARGEST_LAG_S:
                 begin_s += due * period_s - _LARGEST_LAG_S
                 continue
+            if due * period_s > _LATE_S:  # what came meanwhile is read first: the watchdog must not be wrong
+                await asyncio.sleep(0)
             for _ in range(due):
                 self._controller.step()
                 self._desk.look()

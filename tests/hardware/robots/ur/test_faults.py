@@ -153,8 +153,7 @@ def test_a_link_that_is_lost_while_the_arm_stands_is_noticed(bench: Bench) -> No
 
 def test_a_slow_and_uneven_link_does_not_matter(bench: Bench) -> None:
     bench.controller.command("latency 30 20")
-    way = bent_way()
-    bench.robot.follow(way).wait(20)
+    bench.robot.follow(bent_way(0.8)).wait(20)
     bench.robot.move_joints([NEAR, HOME], 1.0, 4.0).wait(20)
     move = bench.begin("follow")
     bench.robot.stop()

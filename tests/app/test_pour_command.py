@@ -1,0 +1,160 @@
+"""`poursight plan`, `pour` and `outcome` from the command line."""
+
+import json
+import shutil
+import socket
+import sys
+import threading
+import time
+
+import pytest
+
+from app import cli
+from core.resources import RESOURCES
+from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.app.test_scan_command import QUICK, SIMULATED
+
+pytest.importorskip("rtde_control")
+
+SHELF_OVER_THE_CUP = """[[obstacles]]
+name = "shelf"
+min_m = [-0.6, 0.0, 0.02]
+max_m = [-0.4, 0.2, 0.5]
+#"""
+
+
+@pytest.fixture(scope="module")
+def imagined(tmp_path_factory):
+    """A bowl, scanned and imagined."""
+    session = tmp_path_factory.mktemp("imagined") / "session"
+    words = ["poursight", "scan", "--session", str(session), "--object", "bowl", *QUICK]
+    for line in (words, ["poursight", "imagine", str(session)]):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sys, "argv", line)
+            with pytest.raises(SystemExit) as leaving:
+                cli.main()
+            assert not leaving.value.code
+    return session
+
+
+@pytest.fixture
+def session(imagined, tmp_path):
+    return shutil.copytree(imagined, tmp_path / "session")
+
+
+def real_cell(tmp_path, address, *changes):
+    """The simulated cell's places with a real robot at an address."""
+    text = SIMULATED.read_text()
+    text = text.replace('kind = "simulated"', 'kind = "realsense"', 1)
+    text = text.replace('kind = "simulated"', f'kind = "ur5"\naddress = "{address}"', 1)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new, 1)
+    path = tmp_path / "cell.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_plan_then_a_pour_then_the_report(poursight, session):
+    code, out, err = poursight("plan", session)
+    assert code == 0, err
+    assert "The arm can make" in out
+    assert "turn back" in out
+    assert "mm around the cup" in out
+    began_s = time.monotonic()
+    assert poursight("plan", session)[1] == out
+    assert time.monotonic() - began_s < 5, "the judgement was kept"
+
+    code, out, err = poursight("pour", session, "--yes")
+    assert code == 0, err
+    assert "of 20 candies were spilled (simulated" in out
+    run = session / "pours" / "0001"
+    events = [json.loads(line) for line in (run / "events.jsonl").read_text().splitlines()]
+    kinds = [event["kind"] for event in events]
+    assert kinds[0] == "confirmed"
+    assert kinds[-2:] == ["done", "measured"]
+    assert events[-1]["pivot_error_m"] < 0.0005
+    outcome = json.loads((run / "outcome.json").read_text())
+    assert outcome["n_spilled"] <= 2
+    sent = json.loads((run / "controller.json").read_text())
+    assert any(entry["what"] == "command" for entry in sent)
+
+    assert poursight("outcome", session, "--spilled", 3, "--remarks", "seen by me")[0] == 0
+    code, out, _ = poursight("report", session)
+    assert code == 0
+    page = (session / "report.html").read_text()
+    assert "Pours that were made" in page
+    assert "3 of 20 candies were spilled. seen by me" in page
+
+
+def test_nothing_moves_without_a_confirmation(refused, session, monkeypatch):
+    assert "Nothing moves without a confirmation" in refused("pour", session)
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    monkeypatch.setattr("rich.console.Console.input", lambda *a, **k: "no")
+    assert "nothing moved" in refused("pour", session)
+    assert not (session / "pours").exists()
+
+
+def test_no_outcome_before_a_pour(refused, session):
+    assert "No pour was made" in refused("outcome", session, "--spilled", 1)
+
+
+def test_a_mesh_stands_in_no_cell(refused, poursight, tmp_path, shared_data):
+    session = tmp_path / "session"
+    mesh = next((shared_data / "objects" / "meshes").glob("*mug*.obj"))
+    assert poursight("imagine", mesh, "--session", session, *QUICK)[0] == 0
+    assert "stands in no cell" in refused("plan", session)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("cup_station_m = [-0.50, 0.10, 0.015]", "cup_station_m = [1.60, 0.10, 0.015]", "at its station"),
+        ("# [[obstacles]]", SHELF_OVER_THE_CUP, "shelf"),
+        ("[scan]", "[motion]\ncup_clearance_m = 0.05\n\n[scan]", "cup_clearance_m must not exceed"),
+    ],
+)
+def test_a_cell_in_which_nothing_can_be_poured(refused, session, tmp_path, old, new, said):
+    text = SIMULATED.read_text()
+    assert old in text
+    cell = tmp_path / "cell.toml"
+    cell.write_text(text.replace(old, new, 1))
+    began_s = time.monotonic()
+    assert said in refused("pour", session, "--cell", cell, "--yes")
+    assert time.monotonic() - began_s < 5
+    assert not (session / "pours").exists()
+
+
+def test_an_address_where_nobody_listens(refused, poursight, session, tmp_path):
+    poursight("plan", session)
+    cell = real_cell(tmp_path, "127.9.9.9")
+    assert "127.9.9.9" in refused("pour", session, "--cell", cell, "--yes")
+    assert not (session / "pours").exists()
+
+
+def test_an_address_where_somebody_else_listens(refused, session, tmp_path):
+    with socket.create_server(("127.9.9.8", 29999)) as stranger:
+        threading.Thread(target=greet, args=(stranger,), daemon=True).start()
+        sentence = refused("pour", session, "--cell", real_cell(tmp_path, "127.9.9.8"), "--yes")
+    assert "no UR controller" in sentence
+    assert not (session / "pours").exists()
+
+
+def greet(server):
+    connection, _ = server.accept()
+    connection.sendall(b"220 mail.example ESMTP\r\n")
+    time.sleep(5)
+
+
+def test_another_arm_than_the_cell_file_says(refused, session, tmp_path):
+    with ControllerProcess("UR5e", "5.11", joints_rad=[4.57, -1.5, -0.6, -2.25, 1.5, 0.7]) as controller:
+        cell = real_cell(tmp_path, controller.address)
+        sentence = refused("pour", session, "--cell", cell, "--yes")
+        state = json.loads(controller.command("state"))
+    assert "not the UR5 of the cell file" in sentence
+    assert state["joints_rad"] == pytest.approx([4.57, -1.5, -0.6, -2.25, 1.5, 0.7])
+    assert not (session / "pours").exists()
+
+
+def test_the_example_of_a_real_cell_names_its_station():
+    assert "cup_station_m = [-0.50, 0.10, 0.015]" in (RESOURCES / "cells" / "ur5_example.toml").read_text()
