@@ -31,7 +31,7 @@ MM = 1000.0
 
 
 @dataclass(frozen=True)
-class PourTask:
+class PreparedPour:
     """What can be poured into the session's object, and in which cell.
 
     Attributes:
@@ -49,7 +49,7 @@ class PourTask:
     target: PourTarget | None
 
 
-def prepare(pipeline: Pipeline, cell_file: Path | None) -> PourTask:
+def prepare(pipeline: Pipeline, cell_file: Path | None) -> PreparedPour:
     """Imagine what is stale and judge which pours the arm can make.
 
     Raises:
@@ -59,7 +59,7 @@ def prepare(pipeline: Pipeline, cell_file: Path | None) -> PourTask:
     session = pipeline.session
     if session.record("mesh") is not None:
         raise InputError(
-            f"The session {session.path} holds a mesh, which stands in no cell; scan it first: 'poursight scan "
+            f"The session {session.path} holds a mesh, which stands in no cell; scan it: 'poursight scan "
             "--object MESH --session DIR' does so in the simulated cell."
         )
     settings = _cell_of(session, cell_file)
@@ -69,7 +69,7 @@ def prepare(pipeline: Pipeline, cell_file: Path | None) -> PourTask:
     if motions is None or imagination.grid is None:
         said = pours_sentence(imagination.containability, imagination.grid, imagination.choice)
         raise StageError(f"There is no pour to make. {said}")
-    return PourTask(settings, cell, imagination.grid, motions, _target(pipeline, imagination, motions))
+    return PreparedPour(settings, cell, imagination.grid, motions, _target(pipeline, imagination, motions))
 
 
 def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
@@ -140,7 +140,7 @@ def _grip(move: PlannedMove) -> str:
     return "" if move.gripper_after is None else f", then {move.gripper_after} the gripper"
 
 
-def _chosen(task: PourTask) -> PourTarget:
+def _chosen(task: PreparedPour) -> PourTarget:
     if task.target is None:
         raise MotionError(motion_sentence(task.motions, task.grid))
     return task.target

@@ -41,6 +41,11 @@ class SafetyMode(IntEnum):
     UNDEFINED = 11
 
     @property
+    def is_emergency(self) -> bool:
+        """Whether an emergency stop is pressed."""
+        return self in (SafetyMode.SYSTEM_EMERGENCY_STOP, SafetyMode.ROBOT_EMERGENCY_STOP)
+
+    @property
     def may_move(self) -> bool:
         """Whether the arm may move in it."""
         return self in (SafetyMode.NORMAL, SafetyMode.REDUCED)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from core.motion.trajectory import JointTrajectory
-from hardware.errors import EmergencyStop, ProtectiveStop, RobotLost, RobotNotReady, TrackingLost
+from hardware.errors import RobotLost, TrackingLost
 from hardware.interfaces import RobotState
-from hardware.modes import RobotMode, SafetyMode
+from hardware.readiness import unreadiness
 
 MAX_AGE_S = 0.5
 MAX_DEVIATION_RAD = 0.06
 """A servoed arm runs behind on its path, which is no deviation; beside it, it has no business."""
-
-_EMERGENCY = (SafetyMode.SYSTEM_EMERGENCY_STOP, SafetyMode.ROBOT_EMERGENCY_STOP)
 
 
 def refuse_unready(state: RobotState) -> None:
@@ -26,16 +24,9 @@ def refuse_unready(state: RobotState) -> None:
         raise RobotLost(
             f"The arm has told nothing for {state.age_s:.1f} s; look at it, and check its network cable."
         )
-    if state.safety_mode in _EMERGENCY:
-        raise EmergencyStop("An emergency stop is pressed; see that all is safe, then release it.")
-    if state.safety_mode is SafetyMode.PROTECTIVE_STOP:
-        raise ProtectiveStop("The controller stopped the arm to protect it; see what it touched.")
-    if not state.safety_mode.may_move:
-        raise RobotNotReady(
-            f"The safety system reports '{state.safety_mode.words}'; put that right on the panel."
-        )
-    if state.robot_mode is not RobotMode.RUNNING:
-        raise RobotNotReady(f"The arm is '{state.robot_mode.words}'; switch it on and release its brakes.")
+    unready = unreadiness(state.safety_mode, state.robot_mode)
+    if unready is not None:
+        raise unready
 
 
 def refuse_deviation(state: RobotState, trajectory: JointTrajectory) -> None:

@@ -39,7 +39,8 @@ def plan_back_off(
         way, rest = stopped, moves[index + 1 :]
     else:
         counterpart = len(plan.moves) - 1 - index
-        way, rest = plan.moves[counterpart], plan.moves[counterpart + 1 :]
+        back = replace(plan.moves[counterpart], trajectory=stopped.trajectory.reversed())
+        way, rest = back, plan.moves[counterpart + 1 :]
     nearest, beside_rad = _nearest(way.trajectory, joints_rad)
     if beside_rad > MOST_BESIDE_RAD:
         raise MotionError(

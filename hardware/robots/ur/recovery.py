@@ -13,7 +13,6 @@ _UNLOCK_WITHIN_S = 8.0
 """The controller unlocks a protective stop 5 s after it, so that somebody looks first."""
 _SWITCH_WITHIN_S = 30.0
 _POLL_S = 0.1
-_EMERGENCY = (SafetyMode.SYSTEM_EMERGENCY_STOP, SafetyMode.ROBOT_EMERGENCY_STOP)
 
 
 def make_ready(dashboard: Dashboard, name: str) -> None:
@@ -40,7 +39,7 @@ def make_ready(dashboard: Dashboard, name: str) -> None:
 
 
 def _refuse_emergency(safety: SafetyMode, name: str) -> None:
-    if safety in _EMERGENCY:
+    if safety.is_emergency:
         raise EmergencyStop(
             f"The emergency stop of the {name} is pressed; see that all is safe, release it, then recover "
             "the robot again."

@@ -6,46 +6,17 @@ import numpy as np
 
 from core.geometry import AnyArray, FloatArray
 from core.motion.joint_path import JOINT_NAMES
-from hardware.errors import (
-    EmergencyStop,
-    ProgramStopped,
-    ProtectiveStop,
-    RobotError,
-    RobotNotReady,
-    TrackingLost,
-)
-from hardware.modes import RobotMode, SafetyMode
+from hardware.errors import ProgramStopped, RobotError, TrackingLost
+from hardware.readiness import unreadiness
 from hardware.robots.ur.mailbox import RUNTIME_PLAYING, robot_mode, safety_mode
 
 TRACKING_RAD = 0.05
 """How far a joint may be from where the controller wants it, and from the way it was asked to go."""
 
-_EMERGENCY = (SafetyMode.SYSTEM_EMERGENCY_STOP, SafetyMode.ROBOT_EMERGENCY_STOP)
-
 
 def unsafe(raw: AnyArray) -> RobotError | None:
-    """What of the safety system or of the arm's power forbids motion, at a state of `FIELDS`."""
-    safety, mode = safety_mode(raw), robot_mode(raw)
-    if safety in _EMERGENCY:
-        return EmergencyStop(
-            "An emergency stop is pressed; see that all is safe, release it and recover the robot."
-        )
-    if safety is SafetyMode.PROTECTIVE_STOP:
-        return ProtectiveStop(
-            "The controller made a protective stop; see what the arm touched or what was too fast for it, "
-            "then recover the robot."
-        )
-    if not safety.may_move:
-        return RobotNotReady(
-            f"The safety system is in '{safety.words}' and lets the arm not move; put that right at the "
-            "robot's panel, then recover the robot."
-        )
-    if mode is not RobotMode.RUNNING:
-        return RobotNotReady(
-            f"The arm is in '{mode.words}', so its brakes hold or its power is off; recover the robot to "
-            "switch it on, when nobody is near."
-        )
-    return None
+    """What stands in the way of motion, for a state of `FIELDS`."""
+    return unreadiness(safety_mode(raw), robot_mode(raw))
 
 
 def deviation(raw: AnyArray) -> RobotError | None:

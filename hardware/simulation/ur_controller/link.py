@@ -147,7 +147,7 @@ class Link(asyncio.Protocol):
             self.received(data)
 
     def _write(self, data: bytes) -> None:
-        if self._transport is not None:
+        if self._transport is not None and not self._transport.is_closing():
             self._transport.write(data)
 
     def _backlog(self) -> int:

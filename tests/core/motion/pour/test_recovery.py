@@ -1,0 +1,87 @@
+"""Backing off after a stop: only along ways that were checked, whatever move was stopped, and where."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.errors import MotionError
+from core.motion.pour.plan import MOVES, MovePhase, PlannedMove, PourPlan
+from core.motion.pour.recovery import plan_back_off
+from core.motion.trajectory import SAMPLE_S, JointTrajectory
+
+CORNERS = np.cumsum(np.random.default_rng(3).uniform(-0.4, 0.4, (8, 6)), axis=0)
+
+
+def a_way(start, goal, duration_s=1.0):
+    u = np.linspace(0, 1, round(duration_s / SAMPLE_S) + 1)
+    share = u * u * (3 - 2 * u)
+    return JointTrajectory(np.arange(len(u)) * SAMPLE_S, start + share[:, None] * (goal - start))
+
+
+@pytest.fixture(scope="module")
+def plan():
+    out = [a_way(CORNERS[k], CORNERS[k + 1]) for k in range(7)]
+    ways = out + [way.reversed() for way in out[::-1]]
+    moves = tuple(PlannedMove(n, p, w, h, g) for (n, p, h, g), w in zip(MOVES, ways, strict=True))
+    return PourPlan(0, 0, moves, np.eye(4), 0.02, ("a", "b"), 0.005, 0.0, 0.1, 1.0, 1.0)
+
+
+def samples(moves):
+    return np.concatenate([move.trajectory.joints_rad for move in moves])
+
+
+@pytest.mark.parametrize("index", range(14))
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_it_leads_home_along_the_plan(plan, index, share):
+    trajectory = plan.moves[index].trajectory
+    stopped_rad = trajectory.joints_rad[int(share * (len(trajectory.times_s) - 1))]
+    moves = plan_back_off(plan, plan.moves, index, stopped_rad)
+    assert moves[0].trajectory.start_rad == pytest.approx(stopped_rad)
+    assert moves[-1].trajectory.end_rad == pytest.approx(plan.start_rad)
+    for before, after in zip(moves, moves[1:], strict=False):
+        assert before.trajectory.end_rad == pytest.approx(after.trajectory.start_rad)
+    allowed = samples(plan.moves)
+    for joints_rad in samples(moves)[::7]:
+        assert np.abs(allowed - joints_rad).max(axis=1).min() < 0.005, "beside every checked way"
+    assert all(move.phase is MovePhase.BACK for move in moves)
+
+
+@pytest.mark.parametrize("index", range(14))
+def test_the_gripper_opens_once_if_the_cup_is_in_the_hand_and_never_closes(plan, index):
+    moves = plan_back_off(plan, plan.moves, index, plan.moves[index].trajectory.joints_rad[40])
+    actions = [move.gripper_after for move in moves if move.gripper_after]
+    assert actions == (["open"] if plan.moves[index].holds_cup else [])
+
+
+def test_it_begins_and_ends_at_rest_and_is_slower_than_the_plan(plan):
+    way = plan.moves[3].trajectory
+    first = plan_back_off(plan, plan.moves, 3, way.joints_rad[60])[0].trajectory
+    speeds = np.abs(np.diff(first.joints_rad, axis=0)).max(axis=1) / SAMPLE_S
+    fastest = np.abs(np.diff(way.joints_rad, axis=0)).max() / SAMPLE_S
+    assert speeds[0] < 0.02 * fastest
+    assert speeds[-1] < 0.02 * fastest
+    assert speeds.max() < fastest
+
+
+def test_an_arm_a_little_beside_joins_its_way_slowly(plan):
+    beside_rad = plan.moves[3].trajectory.joints_rad[60] + [0.0, 0.03, 0.0, 0.0, 0.0, 0.0]
+    join = plan_back_off(plan, plan.moves, 3, beside_rad)[0]
+    assert join.name == "back on the way"
+    assert join.trajectory.start_rad == pytest.approx(beside_rad)
+    assert join.holds_cup
+    speeds = np.abs(np.diff(join.trajectory.joints_rad, axis=0)) / SAMPLE_S
+    assert speeds.max() < 0.15
+
+
+def test_an_arm_that_somebody_pushed_away_is_left_to_people(plan):
+    far_rad = plan.moves[3].trajectory.joints_rad[60] + [0.0, 0.3, 0.0, 0.0, 0.0, 0.0]
+    with pytest.raises(MotionError, match="by hand"):
+        plan_back_off(plan, plan.moves, 3, far_rad)
+
+
+def test_a_way_back_that_is_stopped_itself_goes_on_from_there(plan):
+    moves = plan_back_off(plan, plan.moves, 5, plan.moves[5].trajectory.joints_rad[50])
+    again = plan_back_off(plan, moves, 2, moves[2].trajectory.joints_rad[100])
+    assert [move.name for move in again] == [move.name for move in moves[2:]]
+    assert again[-1].trajectory.end_rad == pytest.approx(plan.start_rad)
