@@ -87,8 +87,7 @@ def one_fault(rig: Rig, fault: str, share: float, is_whole_pour_after: bool) -> 
     rig.pouring.recover()
     if rig.pouring.is_interrupted:
         rig.pouring.back_off(rig.pouring.plan_back_off())
-    home = np.abs(rig.joints_rad - np.array(rig.settings.robot.home_rad)).max()
-    assert home < 2e-3, f"not home: {home}"
+    assert rig.is_home
     if is_whole_pour_after:
         assert PourRun.load(rig.pouring.carry_out(rig.pouring.plan())).is_done
     return stood_s, type(thread.error).__name__

@@ -86,6 +86,11 @@ class Rig:
     def joints_rad(self) -> np.ndarray:
         return np.array(json.loads(self.controller.command("state"))["joints_rad"])
 
+    @property
+    def is_home(self) -> bool:
+        away_rad = np.abs(self.joints_rad - np.array(self.settings.robot.home_rad)).max()
+        return not self.pouring.is_interrupted and bool(away_rad < 2e-3)
+
     def pour_in_background(self) -> PourThread:
         thread = PourThread(self.pouring)
         thread.start()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -39,7 +41,7 @@ def test_it_leads_home_along_the_plan(plan, index, share):
     moves = plan_back_off(plan, plan.moves, index, stopped_rad)
     assert moves[0].trajectory.start_rad == pytest.approx(stopped_rad)
     assert moves[-1].trajectory.end_rad == pytest.approx(plan.start_rad)
-    for before, after in zip(moves, moves[1:], strict=False):
+    for before, after in pairwise(moves):
         assert before.trajectory.end_rad == pytest.approx(after.trajectory.start_rad)
     allowed = samples(plan.moves)
     for joints_rad in samples(moves)[::7]:
