@@ -193,7 +193,8 @@ def _confirm(operator: TerminalReporter | None, question: str) -> None:
 def _recover(operator: TerminalReporter, pouring: Pouring, error: Exception) -> None:
     """Step by step, each confirmed: make the arm ready, back off with the cup, then plan anew."""
     operator.forget_cancel()
-    print(f"Stopped: {error}", file=sys.stderr)
+    said = "Stopped on request." if isinstance(error, Cancelled) else f"Stopped: {error}"
+    print(said, file=sys.stderr)
     _confirm(operator, "Put right what stopped it. Then: make the arm ready again (it does not move)?")
     while True:
         try:
