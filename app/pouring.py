@@ -14,7 +14,6 @@ from core.imagination.results import PourGrid
 from core.motion.pour.cell import PourCell
 from core.motion.pour.choosing import PourMotions
 from core.motion.pour.plan import PlannedMove, PourPlan
-from core.motion.pour.planning import plan_pour
 from core.pipeline import Pipeline
 from core.report import motion_sentence, pours_sentence
 from core.session import Session
@@ -76,16 +75,7 @@ def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
     """Say which pours the arm can make, and what the chosen one looks like from home."""
     task = prepare(pipeline, cell_file)
     target = _chosen(task)
-    found = plan_pour(
-        task.cell,
-        target.object_aabb_m,
-        target.i,
-        target.j,
-        target.theta_rad,
-        target.pivot_m,
-        target.pouring,
-        task.cell.home_rad,
-    )
+    found = target.plan(task.cell, task.cell.home_rad)
     print(motion_sentence(task.motions, task.grid))
     print("\n".join(plan_lines(found)))
 

@@ -57,6 +57,15 @@ class PourTarget:
     pouring: PouringParameters
     digest: str
 
+    def plan(self, cell: PourCell, start_rad: FloatArray) -> PourPlan:
+        """Plan it from joints (6,).
+
+        Raises:
+            MotionError: why the arm cannot make it.
+        """
+        where = self.i, self.j, self.theta_rad, self.pivot_m
+        return plan_pour(cell, self.object_aabb_m, *where, self.pouring, start_rad)
+
 
 @dataclass(frozen=True)
 class FreshPlan:
@@ -99,18 +108,8 @@ class Pouring:
         """
         if self._interrupted is not None:
             raise MotionError("The arm was stopped on its way; let it back off before a new pour is planned.")
-        target = self._target
-        plan = plan_pour(
-            self._cell,
-            target.object_aabb_m,
-            target.i,
-            target.j,
-            target.theta_rad,
-            target.pivot_m,
-            target.pouring,
-            self._arm.robot.state().joints_rad,
-        )
-        return FreshPlan(plan, target, time.monotonic())
+        plan = self._target.plan(self._cell, self._arm.robot.state().joints_rad)
+        return FreshPlan(plan, self._target, time.monotonic())
 
     def carry_out(self, fresh: FreshPlan) -> Path:
         """Check once more that all is as planned, then pour; return the run's folder.
