@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
-from core.motion.pour.plan import PlannedMove
 
+from core.motion.pour.plan import PlannedMove
 from core.progress import Reporter
 from hardware.cell import Arm
 from hardware.errors import DeviceError, RobotError, TrackingLost
