@@ -165,7 +165,7 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
         scan_object(pipeline, read_cell(), name)
         result = pipeline.imagination()
         _print_verdict(result)
-        if result.choice is not None:
+        if result.choice is not None and not pouring.was_poured(pipeline.session):
             pouring.pour(pipeline, None, None)
         path = pipeline.report()
     print(f"Report: {path}")

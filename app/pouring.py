@@ -17,7 +17,7 @@ from core.motion.pour.plan import PlannedMove, PourPlan
 from core.pipeline import Pipeline
 from core.report import motion_sentence, pours_sentence
 from core.session import Session
-from core.session.pour_runs import Outcome, write_outcome
+from core.session.pour_runs import Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
 from hardware.errors import DeviceError
@@ -109,6 +109,13 @@ def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path 
                 _recover(operator, pouring, error)
     _keep_outcome(pipeline, operator, task.settings, folder)
     return folder
+
+
+def was_poured(session: Session) -> bool:
+    """Whether a pour of what is imagined now was made already, and its outcome kept."""
+    record = session.record("pouring")
+    made = [run for run in pour_runs(session.path) if run.is_done and run.outcome is not None]
+    return any(record is not None and run.imagination == record.digest for run in made)
 
 
 def plan_lines(plan: PourPlan) -> list[str]:

@@ -79,6 +79,11 @@ class PourRun:
         return str(self.events[0]["time"]) if self.events else ""
 
     @property
+    def imagination(self) -> str:
+        """Digest of the imagined pours that it was one of; empty for a way back."""
+        return str(self.events[0].get("imagination", "")) if self.events else ""
+
+    @property
     def is_done(self) -> bool:
         """Whether every move was made."""
         return any(event["kind"] == "done" for event in self.events)
