@@ -151,7 +151,7 @@ class GripperSettings(Group):
         source=_CELL,
     )
     grip_height_m: float = quantity(
-        0.06, "How far above the cup's base it grips.", unit="m", source=_CELL, low=0.005, high=0.5
+        0.07, "How far above the cup's base it grips.", unit="m", source=_CELL, low=0.005, high=0.5
     )
     payload_kg: float = quantity(
         1.2, "Mass at the flange: gripper, camera and full cup.", unit="kg", source=_CELL, low=0, high=5

@@ -57,6 +57,11 @@ def finish(out):
     return stderr
 
 
+def scans_on(out):
+    code, _, said = run("scan", "--session", out, "--object=bowl")
+    assert code == 0, said
+
+
 @pytest.mark.parametrize("stage", ["scan", "reconstruction", "containability", "pouring", "pour", "evidence"])
 def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(stage, tmp_path):
     out = tmp_path / "demo"
@@ -76,8 +81,7 @@ def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(stage, tmp_pat
     elif stage == "pour":
         assert pour_runs(out)[-1].sentence.startswith("Stopped during")
     elif stage == "scan":
-        code, _, said = run("scan", "--session", out, "--object=bowl")
-        assert code == 0, said
+        scans_on(out)
     else:
         assert run("imagine", out)[0] == 0
 
@@ -90,4 +94,5 @@ def test_kill_9_at_a_random_moment_loses_no_finished_stage(tmp_path):
         time.sleep(generator.uniform(1.0, 8.0))
         process.kill()
         process.communicate()
-    finish(out)
+    scans_on(out)
+    assert run("imagine", out)[0] == 0

@@ -58,7 +58,7 @@ class Rig:
     """Everything one test needs; entering it connects."""
 
     session: Path
-    speed_up: float = 4.0
+    speed_up: float = 6.0
     version: str = "3.15"
 
     def __enter__(self) -> Rig:
