@@ -50,12 +50,12 @@ def simulated_outcome(pipeline: Pipeline, settings: CellSettings, folder: Path) 
 
 
 def enter_outcome(session: Path, spilled: int | None, remarks: str) -> Outcome:
-    """Keep what somebody counted after the newest run.
+    """Keep what somebody counted after the newest pour.
 
     Raises:
         InputError: no pour was made yet.
     """
-    runs = pour_runs(session)
+    runs = [run for run in pour_runs(session) if not run.is_back_off]
     if not runs:
         raise InputError(f"No pour was made in {session} yet; 'poursight pour {session}' makes one.")
     before = runs[-1].outcome

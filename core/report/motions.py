@@ -65,9 +65,12 @@ def motion_reasons(motions: PourMotions, grid: PourGrid) -> list[tuple[str, str]
 def run_rows(runs: Sequence[PourRun]) -> list[tuple[str, str, str]]:
     """Return (time, how it ended, what was spilled) of each run."""
     return [
-        (_clock(run.begun), run.sentence, run.outcome.sentence if run.outcome else "Not entered yet.")
-        for run in runs
+        (_clock(run.begun), run.sentence, "" if run.is_back_off else _outcome_sentence(run)) for run in runs
     ]
+
+
+def _outcome_sentence(run: PourRun) -> str:
+    return run.outcome.sentence if run.outcome else "Not entered yet."
 
 
 def _place(grid: PourGrid, choice: PourChoice) -> str:

@@ -84,6 +84,11 @@ class PourRun:
         return str(self.events[0].get("imagination", "")) if self.events else ""
 
     @property
+    def is_back_off(self) -> bool:
+        """Whether it was no pour but the way back after one that was stopped."""
+        return bool(self.events and self.events[0].get("is_back_off", False))
+
+    @property
     def is_done(self) -> bool:
         """Whether every move was made."""
         return any(event["kind"] == "done" for event in self.events)
@@ -92,7 +97,7 @@ class PourRun:
     def sentence(self) -> str:
         """How it ended, for people."""
         if self.is_done:
-            return "The pour was made."
+            return "The arm backed off." if self.is_back_off else "The pour was made."
         stops = [event for event in self.events if event["kind"] == "stopped"]
         if not stops:
             return "The run ended without a word: the program was ended while the arm moved."

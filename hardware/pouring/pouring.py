@@ -103,11 +103,17 @@ class Pouring:
         """Plan from where the arm stands now.
 
         Raises:
-            MotionError: there is no way, or a stopped run has to be backed off from first.
+            MotionError: there is no way, a stopped run has to be backed off from first, or the gripper is
+                closed, so that a cup may be in the hand that the plan knows nothing of.
             RobotError: the arm does not answer.
         """
         if self._interrupted is not None:
             raise MotionError("The arm was stopped on its way; let it back off before a new pour is planned.")
+        if self._arm.gripper.is_closed:  # what an earlier program left: this one planned no way back for it
+            raise MotionError(
+                "The gripper is closed, so a cup may be in the hand; take it out, open the gripper and drive "
+                "the arm home at its panel, then pour anew."
+            )
         plan = self._target.plan(self._cell, self._arm.robot.state().joints_rad)
         return FreshPlan(plan, self._target, time.monotonic())
 
@@ -162,7 +168,7 @@ class Pouring:
         plan = self._interrupted[0]
         folder = next_run_folder(self._session)
         with RunLog(folder) as log:
-            log.event("confirmed", "Backing off was confirmed.", plan=plan.digest)
+            log.event("confirmed", "Backing off was confirmed.", plan=plan.digest, is_back_off=True)
             self._make(plan, moves, log)
         return folder
 

@@ -64,6 +64,14 @@ def test_a_plan_expires(fresh_plan, tmp_path):
     assert nothing_moved(arm, tmp_path)
 
 
+def test_a_closed_gripper_may_hold_a_cup_that_no_plan_knows_of(tmp_path):
+    arm = an_arm()
+    arm.gripper.close()
+    with pytest.raises(MotionError, match="take it out"):
+        a_pouring(arm, tmp_path).plan()
+    assert nothing_moved(arm, tmp_path)
+
+
 def test_a_plan_for_another_imagination_is_refused(fresh_plan, tmp_path):
     arm = an_arm()
     other = replace(a_target(SETTINGS), digest="another imagination")
@@ -117,7 +125,9 @@ def test_a_gripper_that_does_not_close_ends_the_run_and_the_hand_withdraws(fresh
     pouring.recover()
     names = [move.name for move in pouring.plan_back_off()]
     assert names == ["retreat", "home"]
-    pouring.back_off(pouring.plan_back_off())
+    back = PourRun.load(pouring.back_off(pouring.plan_back_off()))
+    assert back.is_back_off
+    assert back.sentence == "The arm backed off."
     assert arm.robot.state().joints_rad == pytest.approx(HOME)
 
 
