@@ -1,0 +1,1 @@
+"""Widgets that show plain data and tell what was clicked; they know neither sessions nor jobs."""
