@@ -13,18 +13,17 @@ from typing import Any
 
 from app.answer import answer_table
 from app.listing import short
+from app.remembered import remember_parameters, remembered_parameters
 from app.scanning import ScanWishes, scan_object
 from app.terminal import TerminalReporter
 from core.errors import InputError, SessionError
-from core.files import read_json, write_json
+from core.files import write_json
 from core.imagination.imagine import WORKER_MODULE, Imagination
 from core.parameters import Parameters, apply_settings, difference, load_preset
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.report import pours_sentence, verdict_sentence
-from core.session import Session, explained
+from core.session import Session
 from core.workers import WorkerPool
-
-PARAMETERS_FILE = "parameters.json"
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Choices:
         Raises:
             InputError: an unknown preset or parameter, or a value out of its range.
         """
-        preset, parameters = self._base(session / PARAMETERS_FILE)
+        preset, parameters = self._base(session)
         settings: dict[str, Any] = {}
         for text in self.settings:
             name, equals, value = text.partition("=")
@@ -52,12 +51,10 @@ class Choices:
             settings["seed"] = self.seed
         return preset, apply_settings(parameters, settings)
 
-    def _base(self, remembered: Path) -> tuple[str, Parameters]:
-        if self.preset is None and remembered.is_file():
-            table = read_json(remembered)
-            return str(table.get("preset", "default")), load_preset(str(remembered))
+    def _base(self, session: Path) -> tuple[str, Parameters]:
+        remembered = remembered_parameters(session) if self.preset is None else None
         preset = self.preset or "default"
-        return preset, load_preset(preset)
+        return remembered or (preset, load_preset(preset))
 
 
 def import_scan(folder: Path, session_folder: Path) -> None:
@@ -185,14 +182,12 @@ def _working(
             f"There is no session {folder}; 'poursight import FOLDER --session {folder}' makes one."
         )
     preset, chosen = choices.parameters(folder)
-    changes = {name: value for name, (_, value) in difference(chosen, Parameters()).items()}
     with WorkerPool(workers) as pool, face or TerminalReporter() as reporter:
         pool.start(WORKER_MODULE)
         _print_difference(preset, chosen)
         session = Session.open(folder) if existing else Session.create_or_open(folder)
         with session:
-            with explained(folder):
-                write_json(folder / PARAMETERS_FILE, {"preset": preset, "parameters": changes})
+            remember_parameters(folder, preset, chosen)
             yield Pipeline(session, chosen, pool, reporter, preset)
 
 

@@ -8,7 +8,7 @@ from app.scanning import object_mesh
 from core.errors import InputError
 from core.mesh import TriangleMesh
 from core.motion.pour.plan import PourPlan
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.session import explained
 from core.session.pour_runs import Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings

@@ -14,7 +14,7 @@ from core.imagination.results import PourGrid
 from core.motion.pour.cell import PourCell
 from core.motion.pour.choosing import PourMotions
 from core.motion.pour.plan import PlannedMove, PourPlan
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.report import motion_sentence, pours_sentence
 from core.session import Session
 from core.session.pour_runs import Outcome, pour_runs, write_outcome
@@ -48,8 +48,8 @@ class PreparedPour:
     target: PourTarget | None
 
 
-def prepare(pipeline: Pipeline, cell_file: Path | None) -> PreparedPour:
-    """Imagine what is stale and judge which pours the arm can make.
+def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
+    """Imagine what is stale and judge which pours the arm of a cell can make.
 
     Raises:
         StageError: the object is no open container.
@@ -61,7 +61,6 @@ def prepare(pipeline: Pipeline, cell_file: Path | None) -> PreparedPour:
             f"The session {session.path} holds a mesh, which stands in no cell; scan it: 'poursight scan "
             "--object MESH --session DIR' does so in the simulated cell."
         )
-    settings = _cell_of(session, cell_file)
     cell = pour_cell(settings)
     imagination = pipeline.imagination()
     motions = pipeline.motion(cell, _described(settings))
@@ -73,7 +72,7 @@ def prepare(pipeline: Pipeline, cell_file: Path | None) -> PreparedPour:
 
 def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
     """Say which pours the arm can make, and what the chosen one looks like from home."""
-    task = prepare(pipeline, cell_file)
+    task = prepare(pipeline, cell_of(pipeline.session, cell_file))
     target = _chosen(task)
     found = target.plan(task.cell, task.cell.home_rad)
     print(motion_sentence(task.motions, task.grid))
@@ -91,7 +90,7 @@ def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path 
     Raises:
         PoursightError: the sentence says what is in the way.
     """
-    task = prepare(pipeline, cell_file)
+    task = prepare(pipeline, cell_of(pipeline.session, cell_file))
     target = _chosen(task)
     print(motion_sentence(task.motions, task.grid))
     with open_arm(task.settings) as arm:
@@ -160,7 +159,7 @@ def _target(pipeline: Pipeline, imagination: Imagination, motions: PourMotions) 
     )
 
 
-def _cell_of(session: Session, cell_file: Path | None) -> CellSettings:
+def cell_of(session: Session, cell_file: Path | None) -> CellSettings:
     """The cell that was named, else the one of the scan, else the simulated one."""
     if cell_file is not None:
         return read_cell(cell_file)

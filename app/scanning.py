@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from core.errors import InputError, StageError
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
 
 if TYPE_CHECKING:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter
@@ -26,6 +25,7 @@ from core.motion.pour.choosing import PourMotions
 from core.motion.pour.planning import judge_pours
 from core.parameters import Parameters, load_preset
 from core.pipeline.jobs import collision_job, quality_job, reconstruction_job
+from core.pipeline.needs import source_of, stage_needs
 from core.pipeline.report_content import gather
 from core.ply import read_ply, write_ply
 from core.progress import Reporter
@@ -152,7 +152,7 @@ class Pipeline:
             result: Reconstruction = self._in_worker(job, "reconstruction")
             return result
 
-        return self._fresh("reconstruction", ("scan",), settings.model_dump(), Reconstruction.load, run)
+        return self._stage("reconstruction", Reconstruction.load, run)
 
     def quality(self) -> ScanQuality:
         """Judge the scan: what it did not see, and how well its views agree."""
@@ -167,7 +167,7 @@ class Pipeline:
             result: ScanQuality = self._in_worker(job, "quality")
             return result
 
-        return self._fresh("quality", ("scan", "reconstruction"), {}, ScanQuality.load, run)
+        return self._stage("quality", ScanQuality.load, run)
 
     def surface(self) -> TriangleMesh:
         """Return the object's mesh, reconstructed or imported."""
@@ -187,13 +187,14 @@ class Pipeline:
             model: CollisionModel = self._in_worker(Task(collision_job, (surface, settings)), "collision")
             return model
 
-        return self._fresh("collision", (self._source(),), settings.model_dump(), CollisionModel.load, run)
+        return self._stage("collision", CollisionModel.load, run)
 
     def imagination(self) -> Imagination:
         """Imagine open containability and the pours (Sec. III-A, III-B)."""
         model = self.collision()
-        settings = self._imagination_settings()
-        inputs = self._digests(("collision",))
+        needs = stage_needs(self.parameters, self._source())["containability"]  # the pouring's are the same
+        settings = needs.settings
+        inputs = self._digests(needs.inputs)
         if all(self.session.is_fresh(stage, inputs, settings) for stage in ("containability", "pouring")):
             return self._load_imagination()
         result = imagine(model, self.parameters, self.pool, self.reporter)
@@ -247,7 +248,6 @@ class Pipeline:
     def evidence(self) -> Evidence:
         """Render stills and films of what was imagined."""
         imagination = self.imagination()
-        settings = self.parameters.evidence.model_dump() | {"particle": self.parameters.particle.model_dump()}
 
         def run() -> Evidence:
             return render_evidence(
@@ -261,9 +261,7 @@ class Pipeline:
                 self.reporter,
             )
 
-        return self._fresh(
-            "evidence", (self._source(), "containability", "pouring"), settings, Evidence.load, run
-        )
+        return self._stage("evidence", Evidence.load, run)
 
     def report(self) -> Path:
         """Write the session's report and return its path."""
@@ -300,6 +298,11 @@ class Pipeline:
             if path.is_file():
                 found += read_json(path)["warnings"]
         return found
+
+    def _stage(self, stage: str, load: Callable[[Path], _R], run: Callable[[], _R]) -> _R:
+        """Load a stage that depends on the session and its parameters alone, or run it."""
+        needs = stage_needs(self.parameters, self._source())[stage]
+        return self._fresh(stage, needs.inputs, needs.settings, load, run)
 
     def _fresh(
         self,
@@ -345,20 +348,11 @@ class Pipeline:
         return digests
 
     def _source(self) -> str:
-        return "mesh" if self.session.record("mesh") is not None else "reconstruction"
+        return source_of(self.session)
 
     def _given_parts(self) -> CollisionModel | None:
         folder = self.session.path / "mesh"
         return CollisionModel.load(folder) if (folder / "collision.json").is_file() else None
-
-    def _imagination_settings(self) -> dict[str, Any]:
-        groups = self.parameters.model_dump(
-            include={"seed", "particle", "solver", "containability", "pouring"}
-        )
-        settings: dict[str, Any] = json.loads(json.dumps(groups))
-        settings["aabb_margin_m"] = self.parameters.collision.aabb_margin_m
-        settings["record_interval_s"] = self.parameters.evidence.record_interval_s
-        return settings
 
     def _load_imagination(self) -> Imagination:
         containability, pouring = self.session.folder("containability"), self.session.folder("pouring")

@@ -16,7 +16,7 @@ from scipy.stats import rankdata
 
 from core.imagination.imagine import WORKER_MODULE
 from core.parameters import Parameters, apply_settings
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
 from core.session import Session
 from core.workers import WorkerPool

@@ -25,7 +25,7 @@ from core.imagination.packing import packing_task
 from core.imagination.pouring import indentations_m, pivots_m, pour_directions_rad
 from core.imagination.pours import Pour, replay_task
 from core.parameters import Parameters, load_preset
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
 from core.reconstruction import reconstruct
 from core.scan import read_scan

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from core.errors import PoursightError
 from core.mesh import TriangleMesh
 from core.parameters import Parameters, apply_settings
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.ply import write_ply
 from core.progress import Reporter
 from core.session import Session

@@ -6,7 +6,7 @@ import pytest
 
 from core.errors import Cancelled
 from core.parameters import Parameters, apply_settings
-from core.pipeline import Pipeline
+from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
 from core.session import Session
 from core.workers import WorkerPool
