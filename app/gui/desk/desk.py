@@ -1,0 +1,61 @@
+"""Everything the pages share, made once and handed to each."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Signal
+
+from app.gui.desk.arm_link import ArmLink
+from app.gui.desk.background import Background
+from app.gui.desk.cell import CellChoice
+from app.gui.desk.jobs import Jobs
+from app.gui.desk.workspace import Workspace
+from app.jobs.arm_work import ArmWork
+from app.jobs.scan_work import ScanWork
+from app.jobs.session_work import SessionWork
+
+
+class Desk(QObject):
+    """The session, the jobs and the cell.
+
+    Signals: `page_wanted` with the key of a page that somebody asked for; `told` with a sentence for the
+    message bar.
+
+    Attributes:
+        workspace: the open session and its parameters.
+        jobs: the running job.
+        background: for short work in a thread.
+        cell: the cell that is worked with.
+        arm: the link to the arm, with STOP.
+        session_host: the process that reconstructs and imagines.
+        scan_host: the process that scans.
+        arm_host: the process that pours.
+    """
+
+    page_wanted = Signal(str)
+    told = Signal(str)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.workspace = Workspace(self)
+        self.background = Background(self)
+        self.cell = CellChoice(self.background, self)
+        self.jobs = Jobs(self)
+        self.session_host = self.jobs.make_host(SessionWork, "imagines")
+        self.scan_host = self.jobs.make_host(ScanWork, "scans")
+        self.arm_host = self.jobs.make_host(ArmWork, "moves the arm")
+        self.arm = ArmLink(self.arm_host, self.scan_host, self)
+        self.jobs.news.connect(self.arm.hear)
+        self.jobs.finished.connect(lambda *_: self.workspace.refresh())
+        self.jobs.failed.connect(lambda *_: self.workspace.refresh())
+        self.cell.failed.connect(self.told)
+
+    def prepare(self) -> None:
+        """Start what takes its time, once the window is on the screen."""
+        self.cell.restore()
+        self.session_host.open()
+
+    def close(self) -> None:
+        """End all work; nothing is left behind."""
+        self.arm.close()
+        self.jobs.close()
+        self.background.forget()

@@ -1,0 +1,40 @@
+"""What several painted widgets share: numbers of one width, small text, and hatching."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPainterPath, QPen
+
+
+def tabular(font: QFont, points: float | None = None, *, bold: bool = False) -> QFont:
+    """Return `font` with digits of one width, optionally at another size."""
+    result = QFont(font)
+    result.setFeature(QFont.Tag("tnum"), 1)
+    result.setBold(bold)
+    if points is not None:
+        result.setPointSizeF(points)
+    return result
+
+
+def smaller(font: QFont) -> QFont:
+    """Return `font` one step smaller, for what is read second."""
+    return tabular(font, max(font.pointSizeF() - 1.0, 8.0))
+
+
+def hatch(painter: QPainter, path: QPainterPath, color: QColor, spacing_px: float = 6.0) -> None:
+    """Draw 45 degree lines through `path`; unlike a brush pattern they scale with the screen."""
+    painter.save()
+    painter.setClipPath(path, Qt.ClipOperation.IntersectClip)
+    painter.setPen(QPen(color, 1.2))
+    box = path.boundingRect()
+    x = box.left() - box.height()
+    while x < box.right():
+        painter.drawLine(QPointF(x, box.bottom()), QPointF(x + box.height(), box.top()))
+        x += spacing_px
+    painter.restore()
+
+
+def draw_elided(painter: QPainter, box: QRectF, text: str, flags: Qt.AlignmentFlag) -> None:
+    """Draw one line of `text`, its end replaced by an ellipsis where it is too long."""
+    metrics = QFontMetricsF(painter.font())
+    painter.drawText(box, int(flags), metrics.elidedText(text, Qt.TextElideMode.ElideRight, box.width()))

@@ -1,0 +1,254 @@
+"""The pours as a polar map: 8 directions by 3 distances, each with its P in per cent."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import degrees, pi, radians
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QEvent, QPointF, QSize, Qt, Signal
+from PySide6.QtGui import QHelpEvent, QKeyEvent, QMouseEvent, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
+
+from app.gui.views.polar_layout import PolarLayout
+from app.gui.views.pour_map_painter import LEGEND_PX, RIM_PX, PourMapPainter
+
+_STEPS = {Qt.Key.Key_Left: (1, 0), Qt.Key.Key_Right: (-1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1)}
+
+
+@dataclass(frozen=True)
+class PourCell:
+    """One pour as the map shows it.
+
+    Attributes:
+        i: index of the direction.
+        j: index of the distance.
+        theta_rad: direction from p_E to the pivot, against the base's x-axis.
+        indent_m: L_idt, distance of the pivot from p_E.
+        p: particle-in-object ratio P, 0..1, mean over the packings.
+        spread: standard deviation of P over the packings; None with one packing.
+        is_feasible: whether the arm can make it; None when nobody has looked yet.
+        reason: why it is not feasible, or what is worth knowing of it.
+    """
+
+    i: int
+    j: int
+    theta_rad: float
+    indent_m: float
+    p: float
+    spread: float | None = None
+    is_feasible: bool | None = None
+    reason: str = ""
+
+
+class PourMap(QWidget):
+    """Polar map of the pours, seen from above; base x points right, y up, unless it is turned.
+
+    Attributes:
+        selected: (i, j) the user picked with mouse or keys; not sent by `select`.
+    """
+
+    selected = Signal(int, int)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName("pour_map")
+        self.setAccessibleName(self.tr("Map of the pours"))
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setMouseTracking(True)
+        policy = QSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setSizePolicy(policy)
+        self._cells: dict[tuple[int, int], PourCell] = {}
+        self._chosen: tuple[int, int] | None = None
+        self._selection: tuple[int, int] | None = None
+        self._rotation_deg = 0.0
+        self._other: NDArray[np.float64] | None = None
+        self._other_label = ""
+
+    @property
+    def selection(self) -> tuple[int, int] | None:
+        """(i, j) of the outlined pour."""
+        return self._selection
+
+    @property
+    def rotation_deg(self) -> float:
+        """How far the map is turned, anticlockwise."""
+        return self._rotation_deg
+
+    def set_pours(self, cells: Sequence[PourCell], chosen: tuple[int, int] | None) -> None:
+        """Show the pours of one grid and which was chosen; none: an empty map that says so.
+
+        The comparison is dropped when the grid's shape changes; the selection stays where it can, else it
+        goes to the chosen pour.
+        """
+        self._cells = {(cell.i, cell.j): cell for cell in cells}
+        self._chosen = chosen if chosen in self._cells else None
+        if self._selection not in self._cells:
+            self._selection = self._chosen
+        if self._other is not None and self._other.shape != self.shape:
+            self._other = None
+        self._refresh()
+
+    def set_comparison(self, p: NDArray[np.float64] | None, label: str = "") -> None:
+        """Write in each cell by how much its P is above or below another grid's.
+
+        Args:
+            p: (I, J) P of the other grid, 0..1, in the shape of this one; None ends the comparison.
+            label: what the other one is, such as "theta fixed".
+
+        Raises:
+            ValueError: the shapes differ.
+        """
+        if p is not None and p.shape != self.shape:
+            raise ValueError(f"the other grid is {p.shape}, this one {self.shape}")
+        self._other = p
+        self._other_label = label
+        self._refresh()
+
+    def select(self, i: int, j: int) -> None:
+        """Outline a pour, without a signal; one that is not there ends the selection."""
+        self._selection = (i, j) if (i, j) in self._cells else None
+        self._refresh()
+
+    def set_rotation(self, deg: float) -> None:
+        """Turn the map anticlockwise, as the 3D view is turned; numbers stay upright."""
+        self._rotation_deg = deg
+        self.update()
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of directions and of distances."""
+        return (
+            1 + max((i for i, _ in self._cells), default=-1),
+            1 + max((j for _, j in self._cells), default=-1),
+        )
+
+    def cell_center(self, i: int, j: int) -> QPointF:
+        """Return where on the widget a pour's cell has its middle, px."""
+        return self._layout().middle(i, j)
+
+    def describe(self, i: int, j: int) -> str:
+        """Return everything known of a pour, a line each."""
+        cell = self._cells[i, j]
+        lines = [
+            self.tr("direction {deg:.0f}° from the base's x-axis").format(deg=degrees(cell.theta_rad)),
+            self.tr("pivot {mm:.1f} mm from p_E (L_idt)").format(mm=1000 * cell.indent_m),
+            self._describe_p(cell),
+        ]
+        if self._other is not None:
+            lines.append(
+                self.tr("{points:+.0f} points against {label} ({percent:.0f} %)").format(
+                    points=100 * (cell.p - self._other[i, j]),
+                    label=self._other_label,
+                    percent=100 * self._other[i, j],
+                )
+            )
+        if cell.is_feasible is None:
+            lines.append(self.tr("not yet checked whether the arm can do it"))
+        elif cell.is_feasible:
+            lines.append(self.tr("the arm can do it"))
+        else:
+            lines.append(self.tr("the arm cannot do it"))
+        if cell.reason:
+            lines[-1] += ": " + cell.reason
+        if (i, j) == self._chosen:
+            lines.insert(0, self.tr("chosen"))
+        return "\n".join(lines)
+
+    def _describe_p(self, cell: PourCell) -> str:
+        if cell.spread is None:
+            return self.tr("P {percent:.0f} % (one packing)").format(percent=100 * cell.p)
+        return self.tr("P {percent:.0f} ± {spread:.0f} % over the packings").format(
+            percent=100 * cell.p, spread=100 * cell.spread
+        )
+
+    def sizeHint(self) -> QSize:
+        return QSize(400, 400 + LEGEND_PX)
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(320, 320 + LEGEND_PX)
+
+    def _layout(self) -> PolarLayout:
+        n_directions, n_rings = self.shape
+        thetas = [self._cells[i, 0].theta_rad for i in range(n_directions)] if self._cells else []
+        turn = radians(self._rotation_deg)
+        height = self.height() - LEGEND_PX
+        radius = max(min(self.width(), height) / 2 - RIM_PX, 40.0)
+        return PolarLayout(
+            QPointF(self.width() / 2, height / 2),
+            radius,
+            tuple(theta + turn for theta in thetas),
+            max(n_rings, 3),
+            pi / max(n_directions, 8),
+        )
+
+    def _pick(self, found: tuple[int, int]) -> None:
+        if found != self._selection:
+            self._selection = found
+            self._refresh()
+            self.selected.emit(*found)
+
+    def _refresh(self) -> None:
+        said = self.describe(*self._selection) if self._selection else ""
+        self.setAccessibleDescription(said.replace("\n", ", "))
+        self.update()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        found = self._layout().cell_at(event.position())
+        if event.button() == Qt.MouseButton.LeftButton and found in self._cells:
+            self._pick(found)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        is_over = self._layout().cell_at(event.position()) in self._cells
+        self.setCursor(Qt.CursorShape.PointingHandCursor if is_over else Qt.CursorShape.ArrowCursor)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        step = _STEPS.get(Qt.Key(event.key()))
+        if step is None or not self._cells:
+            super().keyPressEvent(event)
+            return
+        if self._selection is None:
+            self._pick(self._chosen or min(self._cells))
+            return
+        n_directions, n_rings = self.shape
+        i, j = self._selection
+        self._pick(((i + step[0]) % n_directions, min(max(j + step[1], 0), n_rings - 1)))
+
+    def event(self, event: QEvent) -> bool:
+        if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip:
+            found = self._layout().cell_at(QPointF(event.pos()))
+            text = self.describe(*found) if found is not None and found in self._cells else self._legend()
+            QToolTip.showText(event.globalPos(), text, self)
+            return True
+        return super().event(event)
+
+    def _legend(self) -> str:
+        return self.tr(
+            "Each field is a pour: its direction around p_E and its distance from it.\n"
+            "The number is P in per cent: how many candies landed inside.\n"
+            "The arc at the inner edge is the spread over the packings; a full one is 25 points or more.\n"
+            "Hatched: the arm cannot do it. Star: chosen. Arrow keys move the selection."
+        )
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = PourMapPainter(self, self._layout())
+        if not self._cells:
+            painter.paint_empty(self.tr("The pours appear here\nonce they are imagined"))
+        for key, cell in self._cells.items():
+            other = None if self._other is None else float(self._other[key])
+            painter.paint_cell(cell.i, cell.j, cell.p, cell.spread, cell.is_feasible is False, other)
+        if self._chosen is not None:
+            painter.paint_chosen(*self._chosen, self._cells[self._chosen].p)
+        if self._selection is not None:
+            painter.paint_selected(*self._selection, self.hasFocus())
+        painter.paint_rim(self._rotation_deg)
+        indents = [self._cells[0, j].indent_m for j in range(self.shape[1])] if self._cells else []
+        painter.paint_legend(indents, self._other_label if self._other is not None else "")
+        painter.end()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self.update()

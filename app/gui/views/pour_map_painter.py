@@ -1,0 +1,167 @@
+"""How the pour map is painted: cells, marks, rim and legend."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import cos, pi, radians, sin
+
+from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QFontMetricsF, QLinearGradient, QPainter, QPainterPath, QPen, QPolygonF
+from PySide6.QtWidgets import QWidget
+
+from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.color_scale import text_on, viridis
+from app.gui.views.painting import hatch, smaller, tabular
+from app.gui.views.polar_layout import HOLE_RATIO, PolarLayout
+
+RIM_PX = 26
+"""Around the rings, for the directions."""
+LEGEND_PX = 40
+"""Under them, for the colour scale and the rings' distances."""
+_FULL_ARC = 0.25
+"""Spread at which the arc is as wide as its cell."""
+
+
+class PourMapPainter(QPainter):
+    """A painter on a pour map, for one paint event."""
+
+    def __init__(self, widget: QWidget, layout: PolarLayout) -> None:
+        super().__init__(widget)
+        self.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._theme = theme_of(widget)
+        self._font = widget.font()
+        self._size = widget.size()
+        self._layout = layout
+        depth = layout.ring_px(1)[0] - layout.ring_px(0)[0]
+        self._points = min(max(self._font.pointSizeF() * depth / 40, 9.0), 15.0)
+
+    def paint_empty(self, text: str) -> None:
+        """Draw the bare rings, and what will be here."""
+        self.setPen(QPen(self._theme.color("line"), 1))
+        for j in range(self._layout.n_rings):
+            radius = self._layout.ring_px(j)[1]
+            self.drawEllipse(self._layout.center, radius, radius)
+        self.setPen(self._theme.color("muted"))
+        self.setFont(self._font)
+        box = QRectF(0, 0, 2 * self._layout.radius_px, 60)
+        box.moveCenter(self._layout.center)
+        self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+
+    def paint_cell(
+        self, i: int, j: int, p: float, spread: float | None, is_hatched: bool, other: float | None
+    ) -> None:
+        """Draw one cell: its colour and number, its spread, and whether the arm cannot do it."""
+        color = viridis(p)
+        ink = text_on(color)
+        path = self._layout.cell(i, j, 1.0)
+        self.fillPath(path, color)
+        if is_hatched:
+            faint = QColor(ink)
+            faint.setAlphaF(0.55)
+            hatch(self, path, faint)
+        if spread:
+            arc = self._layout.inner_arc(i, j, min(spread / _FULL_ARC, 1.0), 4.5)
+            self.strokePath(arc, QPen(ink, 2.5, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+        lines = [(f"{100 * p:.0f}", self._points, True)]
+        if other is not None:
+            lines.append((f"{100 * (p - other):+.0f}", self._points - 1.5, False))
+        self._write(self._layout.middle(i, j), lines, ink, color if is_hatched else None)
+
+    def _write(
+        self, middle: QPointF, lines: Sequence[tuple[str, float, bool]], ink: QColor, plate: QColor | None
+    ) -> None:
+        """Write lines of (text, points, bold) about a point, on a plate where hatching would disturb."""
+        fonts = [tabular(self._font, points, bold=bold) for _, points, bold in lines]
+        sizes = [
+            QFontMetricsF(font).tightBoundingRect(text) for (text, _, _), font in zip(lines, fonts, strict=True)
+        ]
+        gap = 4.0
+        height = sum(size.height() for size in sizes) + gap * (len(lines) - 1)
+        width = max(size.width() for size in sizes)
+        if plate is not None:
+            box = QRectF(0, 0, width + 8, height + 6)
+            box.moveCenter(middle)
+            self.setPen(Qt.PenStyle.NoPen)
+            self.setBrush(plate)
+            self.drawRoundedRect(box, 3, 3)
+        self.setPen(ink)
+        top = middle.y() - height / 2
+        for (text, _, _), font, size in zip(lines, fonts, sizes, strict=True):
+            self.setFont(font)
+            self.drawText(QPointF(middle.x() - size.center().x(), top - size.top()), text)
+            top += size.height() + gap
+
+    def paint_chosen(self, i: int, j: int, p: float) -> None:
+        """Outline the chosen cell inside and put a star into its corner."""
+        ink = text_on(viridis(p))
+        self.strokePath(self._layout.cell(i, j, 3.0), QPen(ink, 2))
+        radius = self._layout.ring_px(j)[1] - 10.5
+        angle = self._layout.directions_rad[i] + self._layout.half_rad - 11.0 / radius
+        center = self._layout.at(radius, angle)
+        points = [
+            center + QPointF(r * sin(k * pi / 5), -r * cos(k * pi / 5))
+            for k, r in ((k, 6.0 if k % 2 == 0 else 2.6) for k in range(10))
+        ]
+        self.setPen(Qt.PenStyle.NoPen)
+        self.setBrush(ink)
+        self.drawPolygon(QPolygonF(points))
+
+    def paint_selected(self, i: int, j: int, has_focus: bool) -> None:
+        """Outline the selected cell outside, more strongly while keys move it."""
+        path = self._layout.cell(i, j, -1.0)
+        self.strokePath(path, QPen(self._theme.color("window"), 7))
+        width = 4.0 if has_focus else 3.0
+        self.strokePath(path, QPen(self._theme.color("text"), width, join=Qt.PenJoinStyle.RoundJoin))
+
+    def paint_rim(self, rotation_deg: float) -> None:
+        """Write the directions around, and p_E in the middle."""
+        self.setFont(smaller(self._font))
+        metrics = QFontMetricsF(self.font())
+        self.setPen(self._theme.color("muted"))
+        for deg in range(0, 360, 45):
+            text = f"{deg}°" if deg else "x 0°"
+            middle = self._layout.at(
+                self._layout.radius_px + RIM_PX / 2 + 1, radians(deg + rotation_deg)
+            )
+            box = QRectF(0, 0, metrics.horizontalAdvance(text) + 2, metrics.height())
+            box.moveCenter(middle)
+            self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+        hole = HOLE_RATIO * self._layout.radius_px
+        box = QRectF(0, 0, 2 * hole, metrics.height())
+        box.moveCenter(self._layout.center)
+        self.drawText(box, Qt.AlignmentFlag.AlignCenter, "p_E")
+
+    def paint_legend(self, indents_m: Sequence[float], other_label: str) -> None:
+        """Draw the colour scale, 0 to 100 %, and say how far the rings are from p_E."""
+        top = self._size.height() - LEGEND_PX + 4
+        self.setFont(smaller(self._font))
+        metrics = QFontMetricsF(self.font())
+        bar = QRectF(0, top, min(150.0, self._size.width() * 0.4), 10)
+        bar.moveLeft(self._size.width() - bar.width() - GRID_PX - metrics.horizontalAdvance("100 %") / 2)
+        gradient = QLinearGradient(bar.topLeft(), bar.topRight())
+        for k in range(11):
+            gradient.setColorAt(k / 10, viridis(k / 10))
+        scale = QPainterPath()
+        scale.addRoundedRect(bar, 2, 2)
+        self.fillPath(scale, gradient)
+        self.setPen(self._theme.color("muted"))
+        for ratio in (0.0, 0.5, 1.0):
+            box = QRectF(0, bar.bottom() + 2, 60, metrics.height())
+            box.moveLeft(bar.left() + ratio * bar.width() - 30)
+            self.drawText(box, Qt.AlignmentFlag.AlignHCenter, f"{100 * ratio:.0f} %")
+        self._paint_words(bar, indents_m, other_label)
+
+    def _paint_words(self, bar: QRectF, indents_m: Sequence[float], other_label: str) -> None:
+        metrics = QFontMetricsF(self.font())
+        name = QRectF(bar.left() - 26, bar.top() - 3, 22, metrics.height())
+        self.drawText(name, Qt.AlignmentFlag.AlignRight, "P")
+        lines = []
+        if indents_m:
+            distances = ", ".join(f"{1000 * indent:.0f}" for indent in indents_m)
+            lines.append(QCoreApplication.translate("PourMap", "rings {mm} mm").format(mm=distances))
+        if other_label:
+            lines.append(QCoreApplication.translate("PourMap", "± to {label}").format(label=other_label))
+        for k, line in enumerate(lines):
+            box = QRectF(GRID_PX, bar.top() - 3 + k * metrics.height(), name.left() - GRID_PX, metrics.height())
+            text = metrics.elidedText(line, Qt.TextElideMode.ElideRight, box.width())
+            self.drawText(box, Qt.AlignmentFlag.AlignLeft, text)

@@ -1,0 +1,237 @@
+"""Parts as pyqtgraph's items. Surfaces are drawn by our own shader, lit from the eye; needs OpenGL 2.1."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from OpenGL import GL
+from OpenGL.GL import shaders
+from pyqtgraph import Transform3D
+from pyqtgraph.opengl import GLLinePlotItem, GLScatterPlotItem
+from pyqtgraph.opengl.GLGraphicsItem import GLGraphicsItem
+from PySide6.QtOpenGL import QOpenGLBuffer
+
+from app.gui.theme import Theme
+from app.gui.views.scene.parts import Part
+from core.geometry import AnyArray, FloatArray
+
+_VERTEX = """
+#version 120
+attribute vec3 a_position;
+attribute vec3 a_normal;
+attribute vec4 a_color;
+uniform mat4 u_eye;
+uniform mat4 u_projection;
+varying vec3 v_eye;
+varying vec3 v_normal;
+varying vec4 v_color;
+void main() {
+    vec4 seen = u_eye * vec4(a_position, 1.0);
+    v_eye = seen.xyz;
+    v_normal = mat3(u_eye) * a_normal;
+    v_color = a_color;
+    gl_Position = u_projection * seen;
+}
+"""
+_FRAGMENT = """
+#version 120
+uniform vec3 u_up;
+varying vec3 v_eye;
+varying vec3 v_normal;
+varying vec4 v_color;
+void main() {
+    // The face's own normal turns to the eye, however its corners are ordered. Where the smooth normal is far
+    // from it there is a crease.
+    vec3 face = normalize(cross(dFdx(v_eye), dFdy(v_eye)));
+    vec3 smooth_normal = normalize(v_normal);
+    float along = dot(face, smooth_normal);
+    smooth_normal *= sign(along);
+    vec3 normal = normalize(mix(face, smooth_normal, smoothstep(0.70, 0.85, abs(along))));
+    float from_eye = max(dot(normal, vec3(-0.19, 0.27, 0.944)), 0.0);
+    float from_sky = 0.5 + 0.5 * dot(normal, u_up);
+    gl_FragColor = vec4(v_color.rgb * (0.32 + 0.58 * from_eye + 0.16 * from_sky), v_color.a);
+}
+"""
+_POSITION, _NORMAL, _COLOR = 0, 1, 2
+_BLENDED = {
+    GL.GL_DEPTH_TEST: True,
+    GL.GL_BLEND: True,
+    GL.GL_CULL_FACE: False,
+    "glBlendFuncSeparate": (GL.GL_SRC_ALPHA, GL.GL_ONE_MINUS_SRC_ALPHA, GL.GL_ONE, GL.GL_ONE_MINUS_SRC_ALPHA),
+}
+_ON_TOP = {**_BLENDED, GL.GL_DEPTH_TEST: False}
+
+
+class SurfaceProgram:
+    """The surfaces' shader, compiled for the context that is current."""
+
+    def __init__(self) -> None:
+        self.id = shaders.compileProgram(
+            shaders.compileShader(_VERTEX.lstrip(), GL.GL_VERTEX_SHADER),
+            shaders.compileShader(_FRAGMENT.lstrip(), GL.GL_FRAGMENT_SHADER),
+            validate=False,
+        )
+        for location, name in ((_POSITION, "a_position"), (_NORMAL, "a_normal"), (_COLOR, "a_color")):
+            GL.glBindAttribLocation(self.id, location, name)
+        GL.glLinkProgram(self.id)
+        self.eye = GL.glGetUniformLocation(self.id, "u_eye")
+        self.projection = GL.glGetUniformLocation(self.id, "u_projection")
+        self.up = GL.glGetUniformLocation(self.id, "u_up")
+
+
+class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no types
+    """Triangles."""
+
+    def __init__(self, part: Part) -> None:
+        super().__init__()
+        self._part = part
+        self._buffers: dict[str, QOpenGLBuffer] = {}
+        self._colors: AnyArray = np.ones(4, dtype=np.float32)
+        self._dirty = {"position", "normal", "index", "color"}
+        self.setGLOptions(_BLENDED)
+
+    def initializeGL(self) -> None:
+        """Forget the buffers of an earlier context."""
+        self._buffers = {}
+        self._dirty = {"position", "normal", "index", "color"}
+
+    def take_vertices(self) -> None:
+        """Draw the part's vertices as they are now."""
+        self._dirty.add("position")
+
+    def take_colors(self, colors: AnyArray) -> None:
+        """Draw in a colour (4,) or in one for each vertex (N, 4)."""
+        self._colors = colors
+        self._dirty.add("color")
+
+    def paint(self) -> None:
+        """Draw it in its colours."""
+        self.setupGLState()
+        self.draw(self.modelViewMatrix())
+
+    def draw(self, eye: Any) -> None:
+        """Draw it with a matrix that takes its points before the eye."""
+        self._upload()
+        program = self.view().surface_program
+        GL.glUseProgram(program.id)
+        GL.glUniformMatrix4fv(program.eye, 1, False, np.array(eye.data(), dtype=np.float32))
+        projection = np.array(self.projectionMatrix().data(), dtype=np.float32)
+        GL.glUniformMatrix4fv(program.projection, 1, False, projection)
+        GL.glUniform3f(program.up, *self.view().up_before_eye())
+        enabled = self._bind()
+        self._draw_triangles()
+        for location in enabled:
+            GL.glDisableVertexAttribArray(location)
+        GL.glUseProgram(0)
+
+    def _bind(self) -> list[int]:
+        """Tell the shader where its numbers are."""
+        sizes = {"position": (_POSITION, 3), "normal": (_NORMAL, 3), "color": (_COLOR, 4)}
+        enabled = []
+        for name, (location, n) in sizes.items():
+            if name not in self._buffers:
+                continue
+            self._buffers[name].bind()
+            GL.glVertexAttribPointer(location, n, GL.GL_FLOAT, False, 0, None)
+            self._buffers[name].release()
+            GL.glEnableVertexAttribArray(location)
+            enabled.append(location)
+        if "color" not in self._buffers:
+            GL.glVertexAttrib4f(_COLOR, *self._colors)
+        return enabled
+
+    def _draw_triangles(self) -> None:
+        if self._part.indices is None:
+            GL.glDrawArrays(GL.GL_TRIANGLES, 0, len(self._part.vertices_m))
+            return
+        self._buffers["index"].bind()
+        GL.glDrawElements(GL.GL_TRIANGLES, self._part.indices.size, GL.GL_UNSIGNED_INT, None)
+        self._buffers["index"].release()
+
+    def _upload(self) -> None:
+        """Bring to the card what has changed; a vertex without a place goes where its face has no area."""
+        part = self._part
+        if "position" in self._dirty:
+            self._store("position", np.nan_to_num(part.vertices_m))
+        if "normal" in self._dirty and part.normals is not None:
+            self._store("normal", part.normals)
+        if "index" in self._dirty and part.indices is not None:
+            self._store("index", part.indices)
+        if "color" in self._dirty:
+            self._buffers.pop("color", None)
+            if self._colors.ndim == 2:
+                self._store("color", self._colors)
+        self._dirty = set()
+
+    def _store(self, name: str, array: AnyArray) -> None:
+        kind = QOpenGLBuffer.Type.IndexBuffer if name == "index" else QOpenGLBuffer.Type.VertexBuffer
+        buffer = self._buffers.setdefault(name, QOpenGLBuffer(kind))
+        if not buffer.isCreated():
+            buffer.create()
+        data = np.ascontiguousarray(array)
+        buffer.bind()
+        buffer.allocate(data, data.nbytes)  # type: ignore[call-overload]  # takes any buffer, not only bytes
+        buffer.release()
+
+
+class DepthItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no types
+    """The depths of see-through surfaces, drawn before them: of each layer one sees the nearest face only."""
+
+    def __init__(self, surfaces: list[SurfaceItem]) -> None:
+        super().__init__()
+        self._surfaces = surfaces
+        self.setGLOptions(_BLENDED)
+
+    def paint(self) -> None:
+        """Draw without colours."""
+        self.setupGLState()
+        GL.glColorMask(False, False, False, False)
+        for surface in self._surfaces:
+            surface.draw(self.modelViewMatrix() * surface.transform())
+        GL.glColorMask(True, True, True, True)
+
+
+PartItem = SurfaceItem | GLLinePlotItem | GLScatterPlotItem
+
+
+def item_of(part: Part) -> PartItem:
+    """Return the item that draws a part."""
+    if part.kind == "surface":
+        return SurfaceItem(part)
+    options = _ON_TOP if part.is_on_top else _BLENDED
+    if part.kind == "points":
+        item = GLScatterPlotItem(pos=part.vertices_m, size=part.size_px, pxMode=True)
+    else:
+        item = GLLinePlotItem(pos=_ends(part), width=part.size_px, mode="lines", antialias=True)
+    item.setGLOptions(options)
+    return item
+
+
+def set_vertices(item: PartItem, part: Part) -> None:
+    """Give an item its part's vertices as they are now."""
+    if isinstance(item, SurfaceItem):
+        item.take_vertices()
+    else:
+        item.setData(pos=part.vertices_m if part.kind == "points" else _ends(part))
+
+
+def set_colors(item: PartItem, part: Part, theme: Theme) -> None:
+    """Give an item its part's colours in a theme."""
+    colors = part.paint.colors(theme)
+    if isinstance(item, SurfaceItem):
+        item.take_colors(colors)
+        return
+    if colors.ndim == 2 and part.indices is not None:
+        colors = colors[part.indices.ravel()]
+    item.setData(color=colors if colors.ndim == 2 else tuple(float(value) for value in colors))
+
+
+def set_pose(item: PartItem, T_world_part: FloatArray) -> None:
+    """Put an item to a pose (4, 4)."""
+    item.setTransform(Transform3D(T_world_part))
+
+
+def _ends(part: Part) -> AnyArray:
+    """Points (2 S, 3) of the segments."""
+    return part.vertices_m if part.indices is None else part.vertices_m[part.indices.ravel()]

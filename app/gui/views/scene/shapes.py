@@ -1,0 +1,160 @@
+"""Simple surfaces as arrays of vertices (N, 3) and faces (F, 3), counter-clockwise from outside."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+
+from core.geometry import FloatArray, IntArray
+
+Shape = tuple[FloatArray, IntArray]
+
+_SIDES = 24
+_GOLDEN = (1 + 5**0.5) / 2
+
+
+def box_mesh(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> Shape:
+    """A box; each side has its own four vertices, so that its edges look sharp.
+
+    Args:
+        min_m: (3,) lower corner.
+        max_m: (3,) upper corner.
+    """
+    low, high = np.asarray(min_m, dtype=float), np.asarray(max_m, dtype=float)
+    square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    vertices, faces = [], []
+    for axis, sign in product(range(3), (-1, 1)):
+        corners = np.full((4, 3), float(sign))
+        corners[:, [(axis + 1) % 3, (axis + 2) % 3]] = square[:: sign or 1]
+        faces.append(np.array([[0, 1, 2], [0, 2, 3]]) + 4 * len(vertices))
+        vertices.append(corners)
+    return (low + high) / 2 + np.vstack(vertices) * (high - low) / 2, np.vstack(faces)
+
+
+def revolved_mesh(profile_m: Sequence[tuple[float, float]], sides: int = _SIDES) -> Shape:
+    """A profile turned about z; it looks sharp where a point of the profile stands twice.
+
+    Args:
+        profile_m: (radius, height) from the top to the bottom of the outside; it is closed where it begins
+            and ends on the axis.
+        sides: of the polygon that stands for the circle.
+    """
+    outline = np.array(profile_m, dtype=float)
+    angle = 2 * np.pi * np.arange(sides) / sides
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    vertices = np.empty((len(outline), sides, 3))
+    vertices[..., :2] = outline[:, None, :1] * ring
+    vertices[..., 2] = outline[:, None, 1]
+    here = np.arange(sides)
+    after = np.roll(here, -1)
+    faces = []
+    for k in range(len(outline) - 1):
+        if (outline[k] == outline[k + 1]).all():
+            continue
+        upper, lower = k * sides, (k + 1) * sides
+        if outline[k + 1, 0] > 0:
+            faces.append(np.column_stack([upper + here, lower + here, lower + after]))
+        if outline[k, 0] > 0:
+            faces.append(np.column_stack([upper + here, lower + after, upper + after]))
+    return vertices.reshape(-1, 3), np.vstack(faces)
+
+
+def cylinder_mesh(radius_m: float, length_m: float, top_radius_m: float | None = None) -> Shape:
+    """A closed cylinder, or a frustum of a cone, from the origin along z."""
+    top = radius_m if top_radius_m is None else top_radius_m
+    rim = [(0.0, length_m), (top, length_m), (top, length_m), (radius_m, 0.0), (radius_m, 0.0), (0.0, 0.0)]
+    return revolved_mesh(rim)
+
+
+def capsule_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike, radius_m: float, sides: int = _SIDES) -> Shape:
+    """All points within a radius of a segment: a cylinder with round ends."""
+    start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
+    length = float(np.linalg.norm(end - start))
+    angle = np.linspace(0, np.pi / 2, sides // 4 + 1)
+    cap = [(radius_m * float(np.sin(a)), radius_m * float(np.cos(a))) for a in angle]
+    cap[0] = (0.0, radius_m)
+    profile = [(r, length + h) for r, h in cap] + [(r, -h) for r, h in reversed(cap)]
+    vertices, faces = revolved_mesh(profile, sides)
+    return vertices @ _axes_along(end - start).T + start, faces
+
+
+def arrow_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike) -> Shape:
+    """An arrow as thick as suits its length."""
+    start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
+    length = float(np.linalg.norm(end - start))
+    shaft, head, neck = 0.022 * length, 0.07 * length, 0.78 * length
+    profile = [(0.0, length), (head, neck), (head, neck), (shaft, neck), (shaft, neck), (shaft, 0.0)]
+    vertices, faces = revolved_mesh([*profile, (shaft, 0.0), (0.0, 0.0)])
+    return vertices @ _axes_along(end - start).T + start, faces
+
+
+@lru_cache
+def ball() -> Shape:
+    """A unit sphere with few faces, because hundreds are drawn: an icosahedron, divided once."""
+    g = _GOLDEN
+    points = [(0, a, b) for a, b in product((-1, 1), (-g, g))]
+    corners = np.array([*points, *((b, x, a) for x, a, b in points), *((a, b, x) for x, a, b in points)])
+    gaps = np.linalg.norm(corners[:, None] - corners[None], axis=2)
+    near = np.abs(gaps - 2) < 1e-9
+    faces = [
+        (i, j, k) for i, j, k in product(range(12), repeat=3) if i < j < k and near[i, j] and near[j, k] and near[i, k]
+    ]
+    return _divided(corners, _outwards(corners, np.array(faces)))
+
+
+@lru_cache
+def octahedron() -> Shape:
+    """A unit octahedron; each face has its own vertices, so that it looks nothing like a ball."""
+    corners = np.vstack([np.eye(3), -np.eye(3)])
+    faces = np.array([(i, j, k) for i, j, k in product((0, 3), (1, 4), (2, 5))])
+    return corners[_outwards(corners, faces)].reshape(-1, 3), np.arange(24).reshape(-1, 3)
+
+
+def merged(shapes: Sequence[Shape]) -> Shape:
+    """Several surfaces as one."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
+    faces = [faces + start for (_, faces), start in zip(shapes, starts, strict=False)]
+    return np.vstack([vertices for vertices, _ in shapes]), np.vstack(faces)
+
+
+def box_edges(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> FloatArray:
+    """The twelve edges (24, 3) of a box, two points each."""
+    corners = np.array(list(product((0, 1), repeat=3)), dtype=float)
+    pairs = [(a, b) for a, b in product(range(8), repeat=2) if a < b and np.abs(corners[a] - corners[b]).sum() == 1]
+    low, high = np.asarray(min_m, dtype=float), np.asarray(max_m, dtype=float)
+    edges: FloatArray = low + corners[np.array(pairs).ravel()] * (high - low)
+    return edges
+
+
+def _axes_along(direction: FloatArray) -> FloatArray:
+    """A rotation (3, 3) that takes z to a direction; any for a zero direction."""
+    length = np.linalg.norm(direction)
+    if length == 0:
+        return np.eye(3)
+    z = direction / length
+    x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def _outwards(corners: FloatArray, faces: IntArray) -> IntArray:
+    """Faces about the origin, turned so that they are counter-clockwise from outside."""
+    a, b, c = (corners[faces[:, k]] for k in range(3))
+    is_inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
+    return np.where(is_inwards[:, None], faces[:, ::-1], faces)
+
+
+def _divided(corners: FloatArray, faces: IntArray) -> Shape:
+    """Each face in four, all vertices on the unit sphere."""
+    edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    unique, of_edge = np.unique(edges, axis=0, return_inverse=True)
+    ab, bc, ca = len(corners) + of_edge.reshape(3, -1)
+    a, b, c = faces.T
+    parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
+    vertices = np.vstack([corners, corners[unique].mean(axis=1)])
+    unit = vertices / np.linalg.norm(vertices, axis=1, keepdims=True)
+    return unit, np.vstack([np.column_stack(part) for part in parts])
