@@ -13,7 +13,7 @@ from core.errors import PoursightError
 app = typer.Typer(
     name="poursight",
     help="Can I pour into it? Scan an unknown object, imagine whether it contains, and where to pour.",
-    no_args_is_help=True,
+    invoke_without_command=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -42,6 +42,28 @@ WorkersOption = Annotated[
     Optional[int],  # noqa: UP045
     typer.Option("--workers", min=1, max=256, help="Worker processes; by default one a processor."),
 ]
+
+
+@app.callback()
+def desktop(
+    context: typer.Context,
+    headless_check: Annotated[
+        bool,
+        typer.Option(
+            "--headless-check",
+            help="Click through the whole program without a screen, from a new session to poured candies.",
+        ),
+    ] = False,
+) -> None:
+    """Can I pour into it? Without a command: the desktop."""
+    if headless_check:
+        from app.gui.headless_check import check
+
+        raise typer.Exit(check())
+    if context.invoked_subcommand is None:
+        from app.gui.main import run
+
+        raise typer.Exit(run())
 
 
 @app.command("import")
@@ -167,6 +189,44 @@ def report(session: SessionArgument, workers: WorkersOption = None) -> None:
     from app import commands
 
     commands.report(session, workers)
+
+
+@app.command()
+def sessions(
+    text: Annotated[
+        str, typer.Argument(metavar="TEXT", help="Only sessions that hold each of these words.")
+    ] = "",
+) -> None:
+    """List the sessions in the library, the newest first."""
+    from app import library_commands
+
+    library_commands.sessions(text)
+
+
+@app.command()
+def export(
+    session: SessionArgument,
+    html: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--html", metavar="FILE", help="The report as one file for a browser."),
+    ] = None,
+    pdf: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--pdf", metavar="FILE", help="The report for paper."),
+    ] = None,
+    zip_file: Annotated[
+        Optional[Path],  # noqa: UP045
+        typer.Option("--zip", metavar="FILE", help="The whole session."),
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")] = False,
+    workers: WorkersOption = None,
+) -> None:
+    """Export a session's report as HTML or PDF, or all of the session as ZIP."""
+    from app import library_commands
+
+    if html is None and pdf is None and zip_file is None:
+        raise typer.BadParameter("give at least one of --html, --pdf and --zip")
+    library_commands.export(session, html, pdf, zip_file, overwrite, workers)
 
 
 @app.command()

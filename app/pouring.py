@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from app.choosing import refuse_unmakeable
+from app.motion_record import described_cell
 from app.terminal import TerminalReporter
 from core.errors import Cancelled, InputError, MotionError, StageError
 from core.imagination.results import PourGrid
@@ -15,8 +16,9 @@ from core.motion.pour.cell import PourCell
 from core.motion.pour.choosing import PourMotions
 from core.motion.pour.plan import PlannedMove, PourPlan
 from core.pipeline.pipeline import Pipeline
-from core.report import motion_sentence, pours_sentence
+from core.report import motion_sentence, operator_sentence, pours_sentence
 from core.session import Session
+from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
@@ -63,7 +65,7 @@ def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
         )
     cell = pour_cell(settings)
     imagination = pipeline.imagination()
-    motions = pipeline.motion(cell, _described(settings))
+    motions = pipeline.motion(cell, described_cell(settings))
     if motions is None or imagination.grid is None:
         said = pours_sentence(imagination.containability, imagination.grid, imagination.choice)
         raise StageError(f"There is no pour to make. {said}")
@@ -76,7 +78,7 @@ def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
     target = _chosen(task)
     found = target.plan(task.cell, task.cell.home_rad)
     print(motion_sentence(task.motions, task.grid))
-    print("\n".join(plan_lines(found)))
+    print("\n".join(plan_lines(found, target.note)))
 
 
 def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path | None) -> Path:
@@ -97,7 +99,7 @@ def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path 
         pouring = Pouring(arm, task.cell, target, pipeline.session.path, pipeline.reporter)
         while True:
             fresh = pouring.plan()
-            print("\n".join(plan_lines(fresh.plan)))
+            print("\n".join(plan_lines(fresh.plan, target.note)))
             _confirm(operator, f"Let the {arm.robot.name} pour?")
             try:
                 folder = pouring.carry_out(fresh)
@@ -117,9 +119,10 @@ def was_poured(session: Session) -> bool:
     return any(record is not None and run.imagination == record.digest for run in made)
 
 
-def plan_lines(plan: PourPlan) -> list[str]:
-    """Return a plan for people: its moves, their times, and what stays free."""
-    lines = [f"The plan, {plan.duration_s:.0f} s:"]
+def plan_lines(plan: PourPlan, note: str = "") -> list[str]:
+    """Return a plan for people: why it is this pour, its moves, their times, and what stays free."""
+    lines = [note] if note else []
+    lines.append(f"The plan, {plan.duration_s:.0f} s:")
     lines += [f"  {move.name:<14}{move.trajectory.duration_s:6.1f} s{_grip(move)}" for move in plan.moves]
     slower_s = plan.turn_s - plan.imagined_turn_s
     slower = f", {slower_s:.1f} s of it for speeding up" if slower_s > 0.05 else ""
@@ -143,19 +146,23 @@ def _chosen(task: PreparedPour) -> PourTarget:
 
 
 def _target(pipeline: Pipeline, imagination: Imagination, motions: PourMotions) -> PourTarget | None:
-    choice = motions.choice
-    record = pipeline.session.record("pouring")
-    assert record is not None, "the pours were imagined"
+    record, grid = pipeline.session.record("pouring"), imagination.grid
+    assert record is not None and grid is not None, "the pours were imagined"
+    operator = read_operator_choice(pipeline.session.path, record.digest)
+    if operator is not None:
+        refuse_unmakeable(operator, grid, motions)
+    choice = operator or motions.choice
     if choice is None:
         return None
     return PourTarget(
         imagination.containability.aabb_m,
         choice.i,
         choice.j,
-        choice.theta_rad,
-        choice.pivot_m,
+        float(grid.theta_rad[choice.i]),
+        grid.pivot_m[choice.i, choice.j],
         pipeline.parameters.pouring,
         record.digest,
+        "" if operator is None else operator_sentence(operator, grid, motions.choice),
     )
 
 
@@ -167,14 +174,6 @@ def cell_of(session: Session, cell_file: Path | None) -> CellSettings:
     if record is not None and "cell" in record.parameters:
         return CellSettings.model_validate(record.parameters["cell"])
     return read_cell()
-
-
-def _described(settings: CellSettings) -> dict[str, Any]:
-    """What of a cell decides whether a pour can be made."""
-    table: dict[str, Any] = json.loads(
-        settings.model_dump_json(include={"robot", "gripper", "camera", "place", "motion", "obstacles"})
-    )
-    return table
 
 
 def _confirm(operator: TerminalReporter | None, question: str) -> None:

@@ -1,4 +1,4 @@
-"""Making the whole program light or dark: a palette for Qt's own widgets and a little style sheet for ours."""
+"""Making the whole program light or dark: a palette for Qt's own widgets, a little style sheet for ours."""
 
 from __future__ import annotations
 
@@ -80,6 +80,18 @@ def style_sheet(theme: Theme) -> str:
     QPushButton[role="link"] {{
         background: transparent; border: none; color: {t.accent}; text-align: left; padding: 2px 0;
     }}
+    QPushButton#stop {{
+        background: {t.stop}; color: #ffffff; border: 2px solid {t.stop}; border-radius: 6px;
+        font-size: 16pt; font-weight: 800; padding: 0;
+    }}
+    QPushButton#stop:pressed {{ border-color: #ffffff; }}
+    QFrame#top_bar {{ background: {t.surface}; border: none; border-bottom: 1px solid {t.line}; }}
+    QFrame#tab_list {{ background: {t.window}; border: none; border-right: 1px solid {t.line}; }}
+    QFrame#job_bar {{ background: {t.surface}; border: none; border-top: 1px solid {t.line}; }}
+    QFrame#message_bar {{ background: {t.raised}; border: none; border-bottom: 1px solid {t.line}; }}
+    QFrame#log_drawer QPlainTextEdit {{ border: none; border-top: 1px solid {t.line}; }}
+    QProgressBar {{ background: {t.raised}; border: none; border-radius: 3px; }}
+    QProgressBar::chunk {{ background: {t.accent}; border-radius: 3px; }}
     QLabel[role="title"] {{ font-size: 13pt; font-weight: 600; }}
     QLabel[role="heading"] {{ font-weight: 600; }}
     QLabel[role="verdict"] {{ font-size: 12pt; font-weight: 600; }}

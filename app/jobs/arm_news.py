@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from core.geometry import FloatArray
+    from core.motion.pour.plan import PlannedMove, PourPlan
     from hardware.interfaces import RobotState
 
 
@@ -17,11 +20,13 @@ class ArmConnected:
         name: what people call it.
         stop_address: of the controller, whose dashboard takes a stop; none for an arm in the same process.
         is_simulated: whether nothing real moves.
+        pid: of the process that holds it.
     """
 
     name: str
     stop_address: str | None
     is_simulated: bool
+    pid: int = field(default_factory=os.getpid)
 
 
 @dataclass(frozen=True)
@@ -32,11 +37,13 @@ class ArmStatus:
         state: its newest; none if it does not answer.
         is_gripper_closed: as read back; none if that is not known.
         problem: a sentence, if it cannot be used as it is; empty if it can.
+        must_back_off: whether a run was stopped on its way, so that the way back comes before any other.
     """
 
     state: RobotState | None
     is_gripper_closed: bool | None
     problem: str
+    must_back_off: bool = False
 
 
 @dataclass(frozen=True)
@@ -48,7 +55,66 @@ class ArmGone:
 
 @dataclass(frozen=True)
 class StopDone:
-    """STOP was carried out, or not: the sentence says why not."""
+    """STOP was carried out, or not: the sentence says why not.
+
+    Attributes:
+        seconds: from the press until somebody confirmed it.
+        sentence: empty if the arm was stopped.
+    """
 
     seconds: float
     sentence: str = ""
+
+
+@dataclass(frozen=True)
+class MoveProgress:
+    """How far the arm is with what it was let do.
+
+    Attributes:
+        index: of the move under way.
+        name: of it.
+        fraction: of it, 0 to 1.
+        done_s: how much of the planned time is behind it, from the first move on.
+        left_s: how long the rest will take, at the pace so far.
+        pivot_off_m: how far the pivot is from its place; none but in the turn that pours.
+    """
+
+    index: int
+    name: str
+    fraction: float
+    done_s: float
+    left_s: float
+    pivot_off_m: float | None
+
+
+@dataclass(frozen=True)
+class PlannedPour:
+    """A pour that was planned from where the arm stands, to be shown before it is confirmed.
+
+    Attributes:
+        number: names it in the confirmation.
+        plan: the moves, and what stays free.
+        note: why it is this pour, in sentences.
+        expires_s: `time.monotonic` after which it is not carried out any more.
+        pivot_m: (3,) r_pivot.
+        T_flange_cup: (4, 4) the cup in the hand.
+        mouth_m: (N, 3) the way of the middle of the cup's mouth.
+    """
+
+    number: int
+    plan: PourPlan
+    note: str
+    expires_s: float
+    pivot_m: FloatArray
+    T_flange_cup: FloatArray
+    mouth_m: FloatArray
+
+
+@dataclass(frozen=True)
+class PlannedBackOff:
+    """The way back after a stop; see `PlannedPour`."""
+
+    number: int
+    moves: tuple[PlannedMove, ...]
+    T_flange_cup: FloatArray
+    mouth_m: FloatArray

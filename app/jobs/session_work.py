@@ -6,16 +6,20 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from app.jobs.face import JobFace
 from app.jobs.messages import News
+from app.jobs.render_news import PictureWatch
 from app.jobs.service import Service
 from app.remembered import remember_parameters
+from core.geometry import FloatArray
+from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.progress import Reporter
 from core.session import Session
-from core.workers import WorkerPool
+from core.workers import Task, WorkerPool
 
 if TYPE_CHECKING:
     from core.pipeline.pipeline import Pipeline
@@ -94,10 +98,20 @@ class SessionWork(Service):
                 pipeline.quality()
             pipeline.imagination()
 
+    def compare_meshes(self, face: JobFace, before: TriangleMesh, after: TriangleMesh) -> FloatArray:
+        """Return how far each vertex of `after` lies off `before`, in metres, positive outside of it."""
+        from core.reconstruction.difference import surface_difference_m
+
+        task = Task(surface_difference_m, (before, after))
+        difference: FloatArray = self._pool.run([task], "difference", face)[0]
+        return difference
+
     def render(self, face: JobFace, task: SessionTask) -> None:
-        """Render stills and films of what was imagined."""
-        with working_on(task, self._pool, face) as pipeline:
-            pipeline.evidence()
+        """Render stills and films of what was imagined; each still is told as soon as it is drawn."""
+        with TemporaryDirectory(prefix="poursight-", ignore_cleanup_errors=True) as folder:
+            watch = PictureWatch(face, task.folder, Path(folder))
+            with working_on(task, self._pool, watch) as pipeline:
+                pipeline.evidence(Path(folder))
 
     def judge_motions(self, face: JobFace, task: SessionTask, cell: CellSettings) -> None:
         """Find out which of the imagined pours the cell's arm can make.

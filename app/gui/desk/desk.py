@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from PySide6.QtCore import QObject, Signal
 
 from app.gui.desk.arm_link import ArmLink
@@ -12,6 +14,8 @@ from app.gui.desk.workspace import Workspace
 from app.jobs.arm_work import ArmWork
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
+from app.library.places import new_session_folder
+from core.errors import PoursightError
 
 
 class Desk(QObject):
@@ -42,12 +46,30 @@ class Desk(QObject):
         self.jobs = Jobs(self)
         self.session_host = self.jobs.make_host(SessionWork, "imagines")
         self.scan_host = self.jobs.make_host(ScanWork, "scans")
-        self.arm_host = self.jobs.make_host(ArmWork, "moves the arm")
+        self.arm_host = self.jobs.make_host(ArmWork, "moves the arm", is_repeatable=False)
         self.arm = ArmLink(self.arm_host, self.scan_host, self)
         self.jobs.news.connect(self.arm.hear)
         self.jobs.finished.connect(lambda *_: self.workspace.refresh())
         self.jobs.failed.connect(lambda *_: self.workspace.refresh())
         self.cell.failed.connect(self.told)
+
+    def new_session(self, name: str) -> bool:
+        """Open a new session in the usual place, called after today and `name`; False if that cannot be."""
+        return self.open_session(new_session_folder(name))
+
+    def open_session(self, folder: Path) -> bool:
+        """Open a session, or start one in an empty folder; what is in the way is told and changes nothing."""
+        if not self.jobs.is_idle:
+            self.told.emit(
+                self.tr("Work is under way; cancel it, or let it end, before you change the session.")
+            )
+            return False
+        try:
+            self.workspace.open(folder)
+        except PoursightError as error:
+            self.told.emit(str(error))
+            return False
+        return True
 
     def prepare(self) -> None:
         """Start what takes its time, once the window is on the screen."""

@@ -6,12 +6,15 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from app.jobs.host import Host
 from app.jobs.messages import Failed, FailureKind, Finished, Message, News, Progressed, Warned
+from app.jobs.service import Service
+
+S = TypeVar("S", bound=Service)
 
 _TICK_MS = 250
 _SOONEST_GUESS_S = 1.0
@@ -28,11 +31,12 @@ class RunningJob:
         stage: what is under way, by the pipeline's name.
         fraction: of that stage, 0 to 1.
         is_cancelling: whether somebody asked to stop it.
+        start_again: begins the same job once more; none for those that need another look before.
     """
 
     title: str
     page: str
-    start_again: Callable[[], None] = field(repr=False)
+    start_again: Callable[[], None] | None = field(repr=False)
     host: Host[Any] = field(repr=False)
     patience_s: float = 1.0
     stage: str = ""
@@ -75,6 +79,7 @@ class Jobs(QObject):
         super().__init__(parent)
         self.running: RunningJob | None = None
         self._hosts: list[Host[Any]] = []
+        self._once_only: set[Host[Any]] = set()
         self._then: Callable[[Any], None] | None = None
         self._heard.connect(self._hear, Qt.ConnectionType.QueuedConnection)
         self._tick = QTimer(self, interval=_TICK_MS)
@@ -82,12 +87,20 @@ class Jobs(QObject):
         self._enforce = QTimer(self, singleShot=True)
         self._enforce.timeout.connect(self._kill)
 
-    def make_host(self, kind: type[Any], name: str) -> Host[Any]:
-        """Make a host whose messages come here; `name` says what its process does, as in "imagines"."""
-        hosts: list[Host[Any]] = []
-        host: Host[Any] = Host(kind, name, lambda message: self._heard.emit(hosts[0], message))
+    def make_host(self, kind: type[S], name: str, *, is_repeatable: bool = True) -> Host[S]:
+        """Make a host whose messages come here.
+
+        Args:
+            kind: its service's class.
+            name: what its process does, as in "imagines".
+            is_repeatable: whether a failed job of it may simply be begun again; not where things move.
+        """
+        hosts: list[Host[S]] = []
+        host: Host[S] = Host(kind, name, lambda message: self._heard.emit(hosts[0], message))
         hosts.append(host)
         self._hosts.append(host)
+        if not is_repeatable:
+            self._once_only.add(host)
         return host
 
     @property
@@ -119,7 +132,7 @@ class Jobs(QObject):
         if self.running is not None:
             return
         again = partial(self.start, title, page, host, method, *arguments, then=then, patience_s=patience_s)
-        self.running = RunningJob(title, page, again, host, patience_s)
+        self.running = RunningJob(title, page, None if host in self._once_only else again, host, patience_s)
         self._then = then
         self._tick.start()
         self.started.emit(self.running)

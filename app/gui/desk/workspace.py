@@ -10,6 +10,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 from app.jobs.session_work import SessionTask
 from app.remembered import remembered_parameters
 from core.errors import InputError
+from core.files import read_json
 from core.parameters import Parameters, load_preset
 from core.pipeline.needs import Freshness, freshness
 from core.session import Session
@@ -86,6 +87,14 @@ class Workspace(QObject):
     def has(self, stage: str) -> bool:
         """Whether a stage was finished, with whatever parameters."""
         return self.stages.get(stage, Freshness.EMPTY) is not Freshness.EMPTY
+
+    @property
+    def is_container(self) -> bool | None:
+        """The verdict on the object, as far as it is up to date; none if it is not."""
+        if self.session is None or not self.is_fresh("containability"):
+            return None
+        table = read_json(self.session.folder("containability") / "containability.json")
+        return bool(table["is_open_container"])
 
     def edit(self, parameters: Parameters, text: str) -> None:
         """Use other parameters from now on; `text` names the change for the undo menu."""

@@ -11,6 +11,8 @@ from app.gui.desk.desk import Desk
 from app.gui.theme import GRID_PX
 
 SIDE_PX = 380
+PRIMARY = "primary"
+"""Object name of the one button that a page is for."""
 
 
 class Page(QWidget):
@@ -37,6 +39,12 @@ class Page(QWidget):
 
     def refresh(self) -> None:
         """Show what the session holds now; called when the page is visible, and must return at once."""
+
+    def press_primary(self) -> None:
+        """Press the page's main button, if it can be pressed."""
+        button = self.findChild(QPushButton, PRIMARY)
+        if button is not None and button.isEnabled():
+            button.click()
 
     @override
     def showEvent(self, event: QShowEvent) -> None:
@@ -77,7 +85,7 @@ class SidePanel(QFrame):
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         area.setWidget(inside)
         self.primary = QPushButton(primary_text)
-        self.primary.setObjectName("primary")
+        self.primary.setObjectName(PRIMARY)
         self.primary.setProperty("role", "primary")
         self.primary.setMinimumHeight(5 * GRID_PX)
         self._buttons = QHBoxLayout()
@@ -106,4 +114,8 @@ class SplitView(QSplitter):
         self.addWidget(side)
         self.setStretchFactor(0, 1)
         self.setStretchFactor(1, 0)
-        self.setSizes([1000, SIDE_PX])
+        self.reset()
+
+    def reset(self) -> None:
+        """Give the side panel its usual width."""
+        self.setSizes([max(self.width() - SIDE_PX, SIDE_PX), SIDE_PX])

@@ -31,14 +31,12 @@ class HoldButton(QPushButton):
     """Press and hold with the mouse, Space or Enter until the ring is full.
 
     Attributes:
-        confirmed: held to the end; the only signal that means "do it". `clicked` is never sent.
+        confirmed: held to the end; the only signal that means "do it". Never connect to `clicked`.
     """
 
     confirmed = Signal()
 
-    def __init__(
-        self, text: str, hint: str = "", hold_s: float = 1.5, parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, text: str, hint: str = "", hold_s: float = 1.5, parent: QWidget | None = None) -> None:
         """Make one that says `text` and, after an early release, `hint` (default: the text)."""
         super().__init__(text, parent)
         self.setObjectName("hold_button")
@@ -105,38 +103,46 @@ class HoldButton(QPushButton):
         self.update()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Begin to hold."""
         if event.button() == Qt.MouseButton.LeftButton:
             self._begin()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        """Let go."""
         if event.button() == Qt.MouseButton.LeftButton:
             self.cancel()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Off the button is let go."""
         if not self.rect().contains(event.position().toPoint()):
             self.cancel()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Begin to hold."""
         if event.key() not in _KEYS:
             super().keyPressEvent(event)
         elif not event.isAutoRepeat():
             self._begin()
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        """Let go."""
         if event.key() not in _KEYS:
             super().keyReleaseEvent(event)
         elif not event.isAutoRepeat():
             self.cancel()
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
+        """Where keys go elsewhere, a release would not be seen."""
         self.cancel()
         super().focusOutEvent(event)
 
     def hideEvent(self, event: QHideEvent) -> None:
+        """Nobody holds what is not shown."""
         self.cancel()
         super().hideEvent(event)
 
     def changeEvent(self, event: QEvent) -> None:
+        """Disabled is let go; repaint in another theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.EnabledChange and not self.isEnabled():
             self.cancel()
@@ -144,12 +150,14 @@ class HoldButton(QPushButton):
             self.update()
 
     def sizeHint(self) -> QSize:
+        """Return a good size."""
         bold = QFontMetricsF(tabular(self.font(), bold=True))
         small = QFontMetricsF(smaller(self.font()))
         widest = max(bold.horizontalAdvance(self.text()), small.horizontalAdvance(self._second_line("early")))
         return QSize(round(widest) + _RING_PX + 5 * GRID_PX, _RING_PX + 3 * GRID_PX)
 
     def minimumSizeHint(self) -> QSize:
+        """Return the least size it can be read at."""
         return self.sizeHint()
 
     def _second_line(self, state: str) -> str:
@@ -160,6 +168,7 @@ class HoldButton(QPushButton):
         return self.tr("Hold for {seconds} s").format(seconds=f"{self._hold_s:.3g}")
 
     def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint the button, its ring and its two lines."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         theme = theme_of(self)

@@ -45,28 +45,31 @@ class OmegaBar(QWidget):
         """Omega as it is written above the bar."""
         if self._omega is None:
             return self.tr("Omega --")
-        return self.tr("Omega {omega}").format(omega=_number(self._omega))
+        return self.tr("Omega {omega}").format(omega=_numbers(self._omega, self._threshold)[0])
 
     def threshold_text(self) -> str:
         """The threshold as it is written under the bar."""
-        return self.tr("threshold {threshold}").format(threshold=_number(self._threshold))
+        return self.tr("threshold {threshold}").format(threshold=_numbers(self._omega, self._threshold)[1])
 
     def _explain(self) -> str:
         if self._omega is None:
             return self.tr("Omega is the share of the dropped candies that stay (paper, Sec. III-A).")
+        omega, threshold = _numbers(self._omega, self._threshold)
         if self._omega > self._threshold:
             said = self.tr("above the threshold {threshold}: an open container.")
         else:
             said = self.tr("not above the threshold {threshold}: no open container.")
         stayed = self.tr("Omega {omega} of 1: {percent} % of the dropped candies stayed,").format(
-            omega=_number(self._omega), percent=f"{100 * self._omega:.1f}"
+            omega=omega, percent=f"{100 * self._omega:.1f}"
         )
-        return stayed + " " + said.format(threshold=_number(self._threshold))
+        return stayed + " " + said.format(threshold=threshold)
 
     def sizeHint(self) -> QSize:
+        """Return a good size."""
         return QSize(280, self._lines_px() + _BAR_PX)
 
     def minimumSizeHint(self) -> QSize:
+        """Return the least size it can be read at."""
         return QSize(160, self._lines_px() + _BAR_PX)
 
     def _lines_px(self) -> int:
@@ -74,19 +77,22 @@ class OmegaBar(QWidget):
         return round(large + QFontMetricsF(smaller(self.font())).height() + 12)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint the bar, the threshold and their numbers."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         theme = theme_of(self)
         large = tabular(self.font(), self.font().pointSizeF() + 2, bold=True)
         top = QFontMetricsF(large).height() + 2
-        bar = QRectF(GRID_PX / 2, top, self.width() - GRID_PX, _BAR_PX)
+        bar = QRectF(GRID_PX, top, self.width() - 2 * GRID_PX, _BAR_PX)
         painter.setFont(large)
         painter.setPen(theme.color("text"))
-        painter.drawText(QRectF(bar.left(), 0, bar.width(), top), Qt.AlignmentFlag.AlignLeft, self.omega_text())
+        painter.drawText(
+            QRectF(bar.left(), 0, bar.width(), top), Qt.AlignmentFlag.AlignLeft, self.omega_text()
+        )
         painter.setPen(QPen(theme.color("line"), 1))
         painter.setBrush(theme.color("surface"))
         painter.drawRoundedRect(bar, 3, 3)
-        if self._omega is not None:
+        if self._omega:
             filled = QRectF(bar)
             filled.setWidth(bar.width() * min(max(self._omega, 0.0), 1.0))
             painter.setPen(Qt.PenStyle.NoPen)
@@ -97,8 +103,6 @@ class OmegaBar(QWidget):
 
     def _paint_threshold(self, painter: QPainter, bar: QRectF) -> None:
         theme = theme_of(self)
-        painter.setFont(smaller(self.font()))
-        metrics = QFontMetricsF(painter.font())
         x = bar.left() + bar.width() * min(max(self._threshold, 0.0), 1.0)
         painter.setPen(QPen(theme.color("window"), 4))
         painter.drawLine(QPointF(x, bar.top() - 2), QPointF(x, bar.bottom() + 2))
@@ -108,26 +112,39 @@ class OmegaBar(QWidget):
         painter.setBrush(theme.color("text"))
         tip = QPointF(x, bar.bottom() + 1)
         painter.drawPolygon(QPolygonF([tip, tip + QPointF(-5, 7), tip + QPointF(5, 7)]))
+        self._paint_scale(painter, bar, x)
+
+    def _paint_scale(self, painter: QPainter, bar: QRectF, x: float) -> None:
+        """Write the threshold beside its mark, and 0 and 1 where there is room."""
+        painter.setFont(smaller(self.font()))
+        metrics = QFontMetricsF(painter.font())
+        painter.setPen(theme_of(self).color("muted"))
         text = self.threshold_text()
-        width = metrics.horizontalAdvance(text) + 2
-        base = bar.bottom() + 8
-        after = x + 9
-        left = after if after + width <= self.width() else x - 9 - width
-        painter.setPen(theme.color("muted"))
-        box = QRectF(left, base - 5, width, metrics.height())
+        box = QRectF(x + 9, bar.bottom() + 3, metrics.horizontalAdvance(text) + 2, metrics.height())
+        if box.right() > bar.right():
+            box.moveRight(x - 9)
         painter.drawText(box, Qt.AlignmentFlag.AlignLeft, text)
-        painter.drawText(
-            QRectF(bar.right() - 20, base - 5, 20, metrics.height()), Qt.AlignmentFlag.AlignRight, "1"
-        ) if box.right() < bar.right() - 20 else None
+        line = QRectF(bar.left(), box.top(), bar.width(), box.height())
+        digit = metrics.horizontalAdvance("0") + GRID_PX
+        if min(x - 5, box.left()) > bar.left() + digit:
+            painter.drawText(line, Qt.AlignmentFlag.AlignLeft, "0")
+        if max(x + 5, box.right()) < bar.right() - digit:
+            painter.drawText(line, Qt.AlignmentFlag.AlignRight, "1")
 
     def changeEvent(self, event: QEvent) -> None:
+        """Repaint in another theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.update()
 
 
-def _number(ratio: float) -> str:
-    """Two digits, more only where two would hide that it is not zero (or not one)."""
-    if 0 < ratio < 0.005 or 0.995 <= ratio < 1:
-        return f"{ratio:.4f}"
-    return f"{ratio:.2f}" if round(ratio, 2) == round(ratio, 3) else f"{ratio:.3f}"
+def _numbers(omega: float | None, threshold: float) -> tuple[str, str]:
+    """Both with two digits; with more where two would hide a difference that decides."""
+    for digits in (2, 3, 4):
+        texts = (f"{omega or 0.0:.{digits}f}", f"{threshold:.{digits}f}")
+        hides_omega = omega is not None and any(
+            omega != edge and texts[0] == f"{edge:.{digits}f}" for edge in (0.0, 1.0, threshold)
+        )
+        if not hides_omega:
+            break
+    return texts

@@ -73,7 +73,9 @@ class PolarLayout:
         """Return the cell under a point, or None."""
         offset = point - self.center
         radius = hypot(offset.x(), offset.y())
-        ring = next((j for j in range(self.n_rings) if self.ring_px(j)[0] <= radius < self.ring_px(j)[1]), None)
+        ring = next(
+            (j for j in range(self.n_rings) if self.ring_px(j)[0] <= radius < self.ring_px(j)[1]), None
+        )
         if ring is None:
             return None
         angle = atan2(-offset.y(), offset.x())

@@ -13,7 +13,7 @@ from PySide6.QtGui import QHelpEvent, QKeyEvent, QMouseEvent, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from app.gui.views.polar_layout import PolarLayout
-from app.gui.views.pour_map_painter import LEGEND_PX, RIM_PX, PourMapPainter
+from app.gui.views.pour_map_painter import LEGEND_PX, RIM_PX, PourMapPainter, points_text
 
 _STEPS = {Qt.Key.Key_Left: (1, 0), Qt.Key.Key_Right: (-1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1)}
 
@@ -139,8 +139,8 @@ class PourMap(QWidget):
         ]
         if self._other is not None:
             lines.append(
-                self.tr("{points:+.0f} points against {label} ({percent:.0f} %)").format(
-                    points=100 * (cell.p - self._other[i, j]),
+                self.tr("{points} points against {label} ({percent:.0f} %)").format(
+                    points=points_text(cell.p - float(self._other[i, j])),
                     label=self._other_label,
                     percent=100 * self._other[i, j],
                 )
@@ -165,9 +165,11 @@ class PourMap(QWidget):
         )
 
     def sizeHint(self) -> QSize:
+        """Return a good size."""
         return QSize(400, 400 + LEGEND_PX)
 
     def minimumSizeHint(self) -> QSize:
+        """Return the least size it can be read at."""
         return QSize(320, 320 + LEGEND_PX)
 
     def _layout(self) -> PolarLayout:
@@ -196,15 +198,18 @@ class PourMap(QWidget):
         self.update()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Pick the pour under the mouse."""
         found = self._layout().cell_at(event.position())
         if event.button() == Qt.MouseButton.LeftButton and found in self._cells:
             self._pick(found)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Show a hand over what can be picked."""
         is_over = self._layout().cell_at(event.position()) in self._cells
         self.setCursor(Qt.CursorShape.PointingHandCursor if is_over else Qt.CursorShape.ArrowCursor)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Move the selection with the arrows: around, and out or in."""
         step = _STEPS.get(Qt.Key(event.key()))
         if step is None or not self._cells:
             super().keyPressEvent(event)
@@ -217,6 +222,7 @@ class PourMap(QWidget):
         self._pick(((i + step[0]) % n_directions, min(max(j + step[1], 0), n_rings - 1)))
 
     def event(self, event: QEvent) -> bool:
+        """Tell all there is to know of the pour under the mouse, or what the map shows."""
         if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip:
             found = self._layout().cell_at(QPointF(event.pos()))
             text = self.describe(*found) if found is not None and found in self._cells else self._legend()
@@ -233,22 +239,26 @@ class PourMap(QWidget):
         )
 
     def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint the cells, then what lies over them."""
         painter = PourMapPainter(self, self._layout())
+        painter.paint_rings()
         if not self._cells:
             painter.paint_empty(self.tr("The pours appear here\nonce they are imagined"))
         for key, cell in self._cells.items():
             other = None if self._other is None else float(self._other[key])
-            painter.paint_cell(cell.i, cell.j, cell.p, cell.spread, cell.is_feasible is False, other)
+            away_px = 3.0 if key == self._chosen and other is not None else 0.0
+            painter.paint_cell(*key, cell.p, cell.spread, cell.is_feasible is False, other, away_px)
         if self._chosen is not None:
             painter.paint_chosen(*self._chosen, self._cells[self._chosen].p)
         if self._selection is not None:
             painter.paint_selected(*self._selection, self.hasFocus())
-        painter.paint_rim(self._rotation_deg)
+        painter.paint_rim(self._rotation_deg, bool(self._cells))
         indents = [self._cells[0, j].indent_m for j in range(self.shape[1])] if self._cells else []
         painter.paint_legend(indents, self._other_label if self._other is not None else "")
         painter.end()
 
     def changeEvent(self, event: QEvent) -> None:
+        """Repaint in another theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.update()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, pi, radians, sin
+from math import cos, hypot, pi, radians, sin
 
 from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QLinearGradient, QPainter, QPainterPath, QPen, QPolygonF
@@ -22,6 +22,16 @@ _FULL_ARC = 0.25
 """Spread at which the arc is as wide as its cell."""
 
 
+_SMALL_POINTS = 10.0
+"""Font size up to which the star is small, too."""
+
+
+def points_text(difference: float) -> str:
+    """Return a difference of two ratios in points with its sign; none for nothing."""
+    points = round(100 * difference)
+    return f"{points:+d}".replace("-", "\u2212") if points else "0"
+
+
 class PourMapPainter(QPainter):
     """A painter on a pour map, for one paint event."""
 
@@ -35,12 +45,20 @@ class PourMapPainter(QPainter):
         depth = layout.ring_px(1)[0] - layout.ring_px(0)[0]
         self._points = min(max(self._font.pointSizeF() * depth / 40, 9.0), 15.0)
 
-    def paint_empty(self, text: str) -> None:
-        """Draw the bare rings, and what will be here."""
+    @property
+    def _star_px(self) -> float:
+        return 6.0 if self._points > _SMALL_POINTS else 4.5
+
+    def paint_rings(self) -> None:
+        """Draw the bare rings, for where no pour is."""
+        self.setBrush(Qt.BrushStyle.NoBrush)
         self.setPen(QPen(self._theme.color("line"), 1))
         for j in range(self._layout.n_rings):
             radius = self._layout.ring_px(j)[1]
             self.drawEllipse(self._layout.center, radius, radius)
+
+    def paint_empty(self, text: str) -> None:
+        """Say what will be here."""
         self.setPen(self._theme.color("muted"))
         self.setFont(self._font)
         box = QRectF(0, 0, 2 * self._layout.radius_px, 60)
@@ -48,9 +66,19 @@ class PourMapPainter(QPainter):
         self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def paint_cell(
-        self, i: int, j: int, p: float, spread: float | None, is_hatched: bool, other: float | None
+        self,
+        i: int,
+        j: int,
+        p: float,
+        spread: float | None,
+        is_hatched: bool,
+        other: float | None,
+        away_px: float,
     ) -> None:
-        """Draw one cell: its colour and number, its spread, and whether the arm cannot do it."""
+        """Draw one cell: its colour and number, its spread, and whether the arm cannot do it.
+
+        The number stands `away_px` off the middle, away from where the star would be.
+        """
         color = viridis(p)
         ink = text_on(color)
         path = self._layout.cell(i, j, 1.0)
@@ -60,12 +88,15 @@ class PourMapPainter(QPainter):
             faint.setAlphaF(0.55)
             hatch(self, path, faint)
         if spread:
-            arc = self._layout.inner_arc(i, j, min(spread / _FULL_ARC, 1.0), 4.5)
-            self.strokePath(arc, QPen(ink, 2.5, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+            arc = self._layout.inner_arc(i, j, min(spread / _FULL_ARC, 1.0), 5.0)
+            self.strokePath(arc, QPen(ink, 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
         lines = [(f"{100 * p:.0f}", self._points, True)]
         if other is not None:
-            lines.append((f"{100 * (p - other):+.0f}", self._points - 1.5, False))
-        self._write(self._layout.middle(i, j), lines, ink, color if is_hatched else None)
+            lines.append((points_text(p - other), self._points - 1.5, False))
+        middle = self._layout.middle(i, j)
+        off = middle - self._star(i, j)
+        middle += off * (away_px / max(hypot(off.x(), off.y()), 1.0))
+        self._write(middle, lines, ink, color if is_hatched else None)
 
     def _write(
         self, middle: QPointF, lines: Sequence[tuple[str, float, bool]], ink: QColor, plate: QColor | None
@@ -73,7 +104,8 @@ class PourMapPainter(QPainter):
         """Write lines of (text, points, bold) about a point, on a plate where hatching would disturb."""
         fonts = [tabular(self._font, points, bold=bold) for _, points, bold in lines]
         sizes = [
-            QFontMetricsF(font).tightBoundingRect(text) for (text, _, _), font in zip(lines, fonts, strict=True)
+            QFontMetricsF(font).tightBoundingRect(text)
+            for (text, _, _), font in zip(lines, fonts, strict=True)
         ]
         gap = 4.0
         height = sum(size.height() for size in sizes) + gap * (len(lines) - 1)
@@ -95,37 +127,41 @@ class PourMapPainter(QPainter):
         """Outline the chosen cell inside and put a star into its corner."""
         ink = text_on(viridis(p))
         self.strokePath(self._layout.cell(i, j, 3.0), QPen(ink, 2))
-        radius = self._layout.ring_px(j)[1] - 10.5
-        angle = self._layout.directions_rad[i] + self._layout.half_rad - 11.0 / radius
-        center = self._layout.at(radius, angle)
+        center, size = self._star(i, j), self._star_px
         points = [
             center + QPointF(r * sin(k * pi / 5), -r * cos(k * pi / 5))
-            for k, r in ((k, 6.0 if k % 2 == 0 else 2.6) for k in range(10))
+            for k, r in ((k, size if k % 2 == 0 else 0.43 * size) for k in range(10))
         ]
         self.setPen(Qt.PenStyle.NoPen)
         self.setBrush(ink)
         self.drawPolygon(QPolygonF(points))
+
+    def _star(self, i: int, j: int) -> QPointF:
+        """Where the star of a cell is: in its outer corner."""
+        radius = self._layout.ring_px(j)[1] - self._star_px - 4.5
+        angle = self._layout.directions_rad[i] + self._layout.half_rad - (self._star_px + 5.0) / radius
+        return self._layout.at(radius, angle)
 
     def paint_selected(self, i: int, j: int, has_focus: bool) -> None:
         """Outline the selected cell outside, more strongly while keys move it."""
         path = self._layout.cell(i, j, -1.0)
         self.strokePath(path, QPen(self._theme.color("window"), 7))
         width = 4.0 if has_focus else 3.0
-        self.strokePath(path, QPen(self._theme.color("text"), width, join=Qt.PenJoinStyle.RoundJoin))
+        self.strokePath(path, QPen(self._theme.color("text"), width))
 
-    def paint_rim(self, rotation_deg: float) -> None:
+    def paint_rim(self, rotation_deg: float, has_center: bool) -> None:
         """Write the directions around, and p_E in the middle."""
         self.setFont(smaller(self._font))
         metrics = QFontMetricsF(self.font())
         self.setPen(self._theme.color("muted"))
         for deg in range(0, 360, 45):
             text = f"{deg}°" if deg else "x 0°"
-            middle = self._layout.at(
-                self._layout.radius_px + RIM_PX / 2 + 1, radians(deg + rotation_deg)
-            )
+            middle = self._layout.at(self._layout.radius_px + RIM_PX / 2 + 1, radians(deg + rotation_deg))
             box = QRectF(0, 0, metrics.horizontalAdvance(text) + 2, metrics.height())
             box.moveCenter(middle)
             self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+        if not has_center:
+            return
         hole = HOLE_RATIO * self._layout.radius_px
         box = QRectF(0, 0, 2 * hole, metrics.height())
         box.moveCenter(self._layout.center)
@@ -162,6 +198,8 @@ class PourMapPainter(QPainter):
         if other_label:
             lines.append(QCoreApplication.translate("PourMap", "± to {label}").format(label=other_label))
         for k, line in enumerate(lines):
-            box = QRectF(GRID_PX, bar.top() - 3 + k * metrics.height(), name.left() - GRID_PX, metrics.height())
+            box = QRectF(
+                GRID_PX, bar.top() - 3 + k * metrics.height(), name.left() - GRID_PX, metrics.height()
+            )
             text = metrics.elidedText(line, Qt.TextElideMode.ElideRight, box.width())
             self.drawText(box, Qt.AlignmentFlag.AlignLeft, text)

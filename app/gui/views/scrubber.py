@@ -23,6 +23,8 @@ from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.painting import smaller
 
 _HEAD_PX = 8
+_LEAST_LETTERS = 6
+"""A name is shortened to no fewer; fewer tell nobody anything."""
 
 
 @dataclass(frozen=True)
@@ -67,12 +69,16 @@ class Scrubber(QWidget):
 
     def section_at(self, time_s: float) -> Section | None:
         """Return the section that holds a time."""
-        return next((section for section in self._sections if section.begin_s <= time_s < section.end_s), None)
+        return next(
+            (section for section in self._sections if section.begin_s <= time_s < section.end_s), None
+        )
 
     def sizeHint(self) -> QSize:
+        """Return a good size."""
         return QSize(320, round(QFontMetricsF(smaller(self.font())).height()) + _HEAD_PX + GRID_PX)
 
     def minimumSizeHint(self) -> QSize:
+        """Return the least size it can be read at."""
         return QSize(120, self.sizeHint().height())
 
     def _track(self) -> QRectF:
@@ -88,14 +94,17 @@ class Scrubber(QWidget):
         return min(max(ratio, 0.0), 1.0) * self._duration_s
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
+        """Go to the time under the mouse."""
         if event.button() == Qt.MouseButton.LeftButton and self._duration_s > 0:
             self.scrubbed.emit(self._time_at(event.position().x()))
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        """Drag the play head."""
         if event.buttons() & Qt.MouseButton.LeftButton and self._duration_s > 0:
             self.scrubbed.emit(self._time_at(event.position().x()))
 
     def event(self, event: QEvent) -> bool:
+        """Tell the section under the mouse."""
         if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip:
             section = self.section_at(self._time_at(event.pos().x()))
             text = ""
@@ -108,6 +117,7 @@ class Scrubber(QWidget):
         return super().event(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint the sections, what has been played, and the head."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         theme = theme_of(self)
@@ -123,12 +133,14 @@ class Scrubber(QWidget):
             painter.save()
             painter.setClipPath(shape)
             painter.fillRect(played, tint)
-            self._paint_sections(painter, track)
+            plate = self._plate(track, QFontMetricsF(smaller(self.font())))
+            self._paint_sections(painter, track, plate)
             painter.restore()
+            self._paint_current(painter, plate)
             self._paint_head(painter, track)
         painter.end()
 
-    def _paint_sections(self, painter: QPainter, track: QRectF) -> None:
+    def _paint_sections(self, painter: QPainter, track: QRectF, plate: QRectF) -> None:
         theme = theme_of(self)
         painter.setFont(smaller(self.font()))
         metrics = QFontMetricsF(painter.font())
@@ -139,9 +151,32 @@ class Scrubber(QWidget):
                 painter.drawLine(QPointF(left, track.top()), QPointF(left, track.bottom()))
             box = QRectF(left + 5, track.top(), right - left - 8, track.height())
             text = metrics.elidedText(section.name, Qt.TextElideMode.ElideRight, box.width())
-            if len(text) > 2 or text == section.name:  # one letter and an ellipsis tell nobody anything
+            is_readable = text == section.name or len(text) >= _LEAST_LETTERS
+            if is_readable and not box.intersects(plate):
                 painter.setPen(theme.color("text"))
                 painter.drawText(box, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, text)
+
+    def _plate(self, track: QRectF, metrics: QFontMetricsF) -> QRectF:
+        """Where the current section's name goes if its own room is too small; empty if it is not."""
+        section = self.section_at(self._time_s)
+        if section is None:
+            return QRectF()
+        width = metrics.horizontalAdvance(section.name) + 10
+        if width <= self._x_of(section.end_s) - self._x_of(section.begin_s):
+            return QRectF()
+        x = self._x_of(self._time_s) + 2
+        left = x if x + width <= track.right() else x - 4 - width
+        return QRectF(left, track.top(), width, track.height())
+
+    def _paint_current(self, painter: QPainter, plate: QRectF) -> None:
+        section = self.section_at(self._time_s)
+        if section is None or plate.isEmpty():
+            return
+        theme = theme_of(self)
+        painter.fillRect(plate, theme.color("surface"))
+        painter.setFont(smaller(self.font()))
+        painter.setPen(theme.color("text"))
+        painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, section.name)
 
     def _paint_head(self, painter: QPainter, track: QRectF) -> None:
         theme = theme_of(self)
@@ -155,14 +190,17 @@ class Scrubber(QWidget):
         painter.drawPolygon(head)
 
     def focusInEvent(self, event: QFocusEvent) -> None:
+        """Show that keys act here."""
         super().focusInEvent(event)
         self.update()
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
+        """Show that keys act elsewhere."""
         super().focusOutEvent(event)
         self.update()
 
     def changeEvent(self, event: QEvent) -> None:
+        """Repaint in another theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.update()

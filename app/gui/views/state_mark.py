@@ -95,14 +95,17 @@ class StateMark(QWidget):
         self.setAccessibleName(state_word(self._state))
 
     def sizeHint(self) -> QSize:
+        """Return a good size."""
         return QSize(MARK_PX, MARK_PX)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint the mark."""
         painter = QPainter(self)
         paint_mark(painter, QRectF(self.rect()), self._state, theme_of(self))
         painter.end()
 
     def changeEvent(self, event: QEvent) -> None:
+        """Repaint in another theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.update()

@@ -180,6 +180,7 @@ class Timeline(QWidget):
         self.set_time(time_s)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
+        """Toggle, step and jump."""
         if event.key() == Qt.Key.Key_Space:
             if not event.isAutoRepeat():
                 self.toggle()
@@ -197,7 +198,9 @@ class Timeline(QWidget):
             case Qt.Key.Key_Left if by_section:
                 return max((start for start in starts if start < self._time_s - 1e-6), default=0.0)
             case Qt.Key.Key_Right if by_section:
-                return min((start for start in starts if start > self._time_s + 1e-6), default=self._duration_s)
+                return min(
+                    (start for start in starts if start > self._time_s + 1e-6), default=self._duration_s
+                )
             case Qt.Key.Key_Left:
                 return self._time_s - STEP_S
             case Qt.Key.Key_Right:
@@ -209,10 +212,12 @@ class Timeline(QWidget):
         return None
 
     def hideEvent(self, event: QHideEvent) -> None:
+        """Nothing plays unseen."""
         self.pause()
         super().hideEvent(event)
 
     def changeEvent(self, event: QEvent) -> None:
+        """Keep the widths that the words need."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.FontChange:
             with QSignalBlocker(self):

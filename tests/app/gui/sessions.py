@@ -1,4 +1,4 @@
-"""Sessions to look at, made once by the real pipeline with settings that are quick, and copied for each test."""
+"""Sessions to look at, made once by the real pipeline with quick settings, and copied for each test."""
 
 from __future__ import annotations
 

@@ -8,11 +8,12 @@ import numpy.typing as npt
 from app.gui.views.scene.parts import Layer, Paint, Part
 from app.gui.views.scene.picking import BallTarget
 from app.gui.views.scene.prepared import Float32Array, vertex_normals
-from app.gui.views.scene.shapes import ball, octahedron
+from app.gui.views.scene.shapes import ball, merged, octahedron
 from core.geometry import BoolArray
 
 _LOST_SIZE = 1.25
 """An octahedron looks smaller than the ball around it."""
+_SHAPES = {True: ball, False: octahedron}
 
 
 class Candies:
@@ -24,22 +25,20 @@ class Candies:
 
     def __init__(self, n: int, radius_m: float, kept: BoolArray | None) -> None:
         is_kept = np.ones(n, dtype=bool) if kept is None else np.asarray(kept, dtype=bool)
-        shapes = {True: ball(), False: octahedron()}
-        sizes = {True: radius_m, False: _LOST_SIZE * radius_m}
-        counts = np.array([len(shapes[bool(k)][0]) for k in is_kept], dtype=np.intp)
-        offsets = [sizes[bool(k)] * shapes[bool(k)][0] for k in is_kept]
-        starts = np.concatenate([[0], np.cumsum(counts)[:-1]]) if n else counts
-        faces = [shapes[bool(k)][1] + start for k, start in zip(is_kept, starts, strict=True)]
-        self._offsets = _rows(offsets, np.float32)
+        shapes = [_SHAPES[bool(one)]() for one in is_kept]
+        counts = np.array([len(vertices) for vertices, _ in shapes], dtype=np.intp)
+        vertices, faces = merged(shapes)
+        sizes = np.where(is_kept, radius_m, _LOST_SIZE * radius_m)
         self._candy_of_vertex = np.repeat(np.arange(n), counts)
-        indices = _rows(faces, np.uint32)
+        self._offsets = (vertices * sizes[self._candy_of_vertex, None]).astype(np.float32)
+        indices = faces.astype(np.uint32)
         self._target = BallTarget(np.full((n, 3), np.nan), radius_m)
         part = Part(
             "surface",
             np.full_like(self._offsets, np.nan),
             Paint(("kept", "lost"), which=np.repeat(~is_kept, counts).astype(np.uint8)),
             normals=vertex_normals(self._offsets, indices),
-            indices=indices,
+            indices=indices.ravel(),
         )
         self.layer = Layer((part,), self._target)
 
@@ -53,8 +52,3 @@ class Candies:
         vertices: Float32Array = positions_m[self._candy_of_vertex]
         vertices += self._offsets
         return vertices
-
-
-def _rows(arrays: list[npt.NDArray[np.float64]] | list[npt.NDArray[np.int64]], dtype: type) -> npt.NDArray[np.generic]:
-    """Arrays (n, 3) under each other, also if there are none."""
-    return np.vstack([np.empty((0, 3)), *arrays]).astype(dtype)

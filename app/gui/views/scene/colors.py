@@ -9,21 +9,14 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 import numpy.typing as npt
 
+from app.gui.views.color_scale import TURBO, VIRIDIS, color_table
+
 if TYPE_CHECKING:
     from app.gui.theme import Theme
 
 ColorArray = npt.NDArray[np.float32]
 
-_MAPS = {
-    "viridis": "440154 470d60 48186a 482374 472d7b 453781 424086 3e4989 3b528b 375b8d 33638d "
-    "2f6b8e 2c728e 297a8e 26828e 23898e 21918c 1f988b 1fa088 22a785 28ae80 32b67a "
-    "3fbc73 4ec36b 5ec962 70cf57 84d44b 98d83e addc30 c2df23 d8e219 ece51b fde725",
-    "turbo": "30123b 392a73 4040a2 4456c7 466be3 4680f6 4294ff 37a8fa 28bceb 1ccdd8 18ddc2 "
-    "1fe9af 32f298 4ef97d 6dfe62 8bff4b a4fc3c b9f635 cdec34 dfdf37 eecf3a f8be39 "
-    "fdac34 fe962b fb7e21 f46617 eb500e df3f08 d02f05 be2102 a91601 920b01 7a0403",
-}
-"""Every eighth of the 256 colours of viridis (CC0) and of turbo (Apache 2.0); between them 1 % is lost."""
-
+_MAPS = {"viridis": VIRIDIS, "turbo": TURBO}
 _STEPS = 256
 
 
@@ -51,7 +44,8 @@ class ColorScale:
         span = self.high - self.low
         share = (numbers - self.low) / span if span > 0 else np.zeros_like(numbers)
         step = np.nan_to_num(np.clip(share, 0, 1) * (_STEPS - 1), nan=_STEPS).round().astype(np.intp)
-        return _table(self.colormap)[step]
+        colors: ColorArray = _table(self.colormap)[step]
+        return colors
 
 
 def hex_color(color: str) -> ColorArray:
@@ -67,7 +61,5 @@ def theme_color(theme: Theme, name: str) -> ColorArray:
 @lru_cache
 def _table(colormap: str) -> ColorArray:
     """The map's colours (257, 4); the last one, transparent, is for what has no value."""
-    anchors = np.array([hex_color("#" + word) for word in _MAPS[colormap].split()])
-    at = np.linspace(0, len(anchors) - 1, _STEPS)
-    columns = [np.interp(at, np.arange(len(anchors)), column) for column in anchors.T]
-    return np.vstack([np.column_stack(columns), np.zeros(4)]).astype(np.float32)
+    opaque = np.column_stack([color_table(_MAPS[colormap], _STEPS) / 255, np.ones(_STEPS)])
+    return np.vstack([opaque, np.zeros(4)]).astype(np.float32)

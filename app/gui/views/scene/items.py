@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from OpenGL import GL
 from OpenGL.GL import shaders
-from pyqtgraph import Transform3D
 from pyqtgraph.opengl import GLLinePlotItem, GLScatterPlotItem
 from pyqtgraph.opengl.GLGraphicsItem import GLGraphicsItem
 from PySide6.QtOpenGL import QOpenGLBuffer
 
-from app.gui.theme import Theme
 from app.gui.views.scene.parts import Part
-from core.geometry import AnyArray, FloatArray
+from core.geometry import AnyArray
 
 _VERTEX = """
 #version 120
@@ -47,7 +45,7 @@ void main() {
     vec3 smooth_normal = normalize(v_normal);
     float along = dot(face, smooth_normal);
     smooth_normal *= sign(along);
-    vec3 normal = normalize(mix(face, smooth_normal, smoothstep(0.70, 0.85, abs(along))));
+    vec3 normal = normalize(mix(face, smooth_normal, smoothstep(0.82, 0.94, abs(along))));
     float from_eye = max(dot(normal, vec3(-0.19, 0.27, 0.944)), 0.0);
     float from_sky = 0.5 + 0.5 * dot(normal, u_up);
     gl_FragColor = vec4(v_color.rgb * (0.32 + 0.58 * from_eye + 0.16 * from_sky), v_color.a);
@@ -58,8 +56,13 @@ _BLENDED = {
     GL.GL_DEPTH_TEST: True,
     GL.GL_BLEND: True,
     GL.GL_CULL_FACE: False,
+    "glDepthRange": (0.0, 1.0),
+    "glDepthFunc": (GL.GL_LEQUAL,),
     "glBlendFuncSeparate": (GL.GL_SRC_ALPHA, GL.GL_ONE_MINUS_SRC_ALPHA, GL.GL_ONE, GL.GL_ONE_MINUS_SRC_ALPHA),
 }
+_OPAQUE = {**_BLENDED, GL.GL_BLEND: False}
+_LINES = {**_BLENDED, "glDepthRange": (0.0, 1 - 3e-5)}
+"""Lines on a surface are before it: by 1.5 mm when seen from a metre away."""
 _ON_TOP = {**_BLENDED, GL.GL_DEPTH_TEST: False}
 
 
@@ -89,7 +92,7 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
         self._buffers: dict[str, QOpenGLBuffer] = {}
         self._colors: AnyArray = np.ones(4, dtype=np.float32)
         self._dirty = {"position", "normal", "index", "color"}
-        self.setGLOptions(_BLENDED)
+        self.setGLOptions(_OPAQUE if part.paint.opacity == 1 else _BLENDED)
 
     def initializeGL(self) -> None:
         """Forget the buffers of an earlier context."""
@@ -192,46 +195,51 @@ class DepthItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no types
         GL.glColorMask(True, True, True, True)
 
 
-PartItem = SurfaceItem | GLLinePlotItem | GLScatterPlotItem
+class LineItem(GLLinePlotItem):  # type: ignore[misc]  # pyqtgraph has no types
+    """Segments."""
+
+    def __init__(self, part: Part, pixel_ratio: float) -> None:
+        super().__init__(width=part.size_px * pixel_ratio, mode="lines", antialias=True)
+        self._part = part
+        self.setGLOptions(_ON_TOP if part.is_on_top else _LINES)
+        self.take_vertices()
+
+    def take_vertices(self) -> None:
+        """Draw the part's vertices as they are now."""
+        self.setData(pos=self._of_ends(self._part.vertices_m))
+
+    def take_colors(self, colors: AnyArray) -> None:
+        """Draw in a colour (4,) or in one for each vertex (N, 4)."""
+        self.setData(color=self._of_ends(colors) if colors.ndim == 2 else tuple(colors.tolist()))
+
+    def _of_ends(self, of_vertices: AnyArray) -> AnyArray:
+        """What the vertices have (N, ...), for the two ends of each segment (2 S, ...)."""
+        return of_vertices if self._part.indices is None else of_vertices[self._part.indices]
 
 
-def item_of(part: Part) -> PartItem:
-    """Return the item that draws a part."""
+class PointItem(GLScatterPlotItem):  # type: ignore[misc]  # pyqtgraph has no types
+    """Points."""
+
+    def __init__(self, part: Part, pixel_ratio: float) -> None:
+        super().__init__(size=part.size_px * pixel_ratio, pxMode=True)
+        self._part = part
+        self.setGLOptions(_ON_TOP if part.is_on_top else _LINES)
+        self.take_vertices()
+
+    def take_vertices(self) -> None:
+        """Draw the part's vertices as they are now."""
+        self.setData(pos=self._part.vertices_m)
+
+    def take_colors(self, colors: AnyArray) -> None:
+        """Draw in a colour (4,) or in one for each vertex (N, 4)."""
+        self.setData(color=colors if colors.ndim == 2 else tuple(colors.tolist()))
+
+
+PartItem: TypeAlias = SurfaceItem | LineItem | PointItem
+
+
+def item_of(part: Part, pixel_ratio: float) -> PartItem:
+    """Return the item that draws a part, on a screen with so many pixels for one of Qt's."""
     if part.kind == "surface":
         return SurfaceItem(part)
-    options = _ON_TOP if part.is_on_top else _BLENDED
-    if part.kind == "points":
-        item = GLScatterPlotItem(pos=part.vertices_m, size=part.size_px, pxMode=True)
-    else:
-        item = GLLinePlotItem(pos=_ends(part), width=part.size_px, mode="lines", antialias=True)
-    item.setGLOptions(options)
-    return item
-
-
-def set_vertices(item: PartItem, part: Part) -> None:
-    """Give an item its part's vertices as they are now."""
-    if isinstance(item, SurfaceItem):
-        item.take_vertices()
-    else:
-        item.setData(pos=part.vertices_m if part.kind == "points" else _ends(part))
-
-
-def set_colors(item: PartItem, part: Part, theme: Theme) -> None:
-    """Give an item its part's colours in a theme."""
-    colors = part.paint.colors(theme)
-    if isinstance(item, SurfaceItem):
-        item.take_colors(colors)
-        return
-    if colors.ndim == 2 and part.indices is not None:
-        colors = colors[part.indices.ravel()]
-    item.setData(color=colors if colors.ndim == 2 else tuple(float(value) for value in colors))
-
-
-def set_pose(item: PartItem, T_world_part: FloatArray) -> None:
-    """Put an item to a pose (4, 4)."""
-    item.setTransform(Transform3D(T_world_part))
-
-
-def _ends(part: Part) -> AnyArray:
-    """Points (2 S, 3) of the segments."""
-    return part.vertices_m if part.indices is None else part.vertices_m[part.indices.ravel()]
+    return LineItem(part, pixel_ratio) if part.kind == "lines" else PointItem(part, pixel_ratio)

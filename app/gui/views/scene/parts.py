@@ -18,6 +18,9 @@ if TYPE_CHECKING:
 
 ByteArray = npt.NDArray[np.uint8]
 
+_FEW = 2000
+"""So many vertices are their own outline; of more it is the box around them."""
+
 
 @dataclass(frozen=True)
 class Paint:
@@ -59,7 +62,7 @@ class Part:
         vertices_m: (N, 3) in the part's own frame.
         paint: its colours.
         normals: (N, 3) of a surface.
-        indices: of the vertices, three for each triangle; of lines two for each segment. None: in their order.
+        indices: (M,) of the vertices: three for each triangle, two for each segment; None: in their order.
         size_px: width of lines, size of points.
         is_on_top: whether nothing hides it.
         T_layer_part: (4, 4) pose in its layer.
@@ -75,6 +78,21 @@ class Part:
     is_on_top: bool = False
     T_layer_part: FloatArray = field(default_factory=lambda: np.eye(4))
     revision: int = 0
+    _outline: tuple[int, FloatArray] | None = None
+
+    def outline_m(self) -> FloatArray:
+        """Points (K, 3) of the part's frame within which its vertices lie."""
+        if self._outline is None or self._outline[0] != self.revision:
+            placed = self.vertices_m[np.isfinite(self.vertices_m).all(axis=1)].astype(float)
+            self._outline = self.revision, placed if len(placed) <= _FEW else _box_corners(placed)
+        return self._outline[1]
+
+    @property
+    def n_triangles(self) -> int:
+        """How many triangles it has."""
+        if self.kind != "surface":
+            return 0
+        return (len(self.vertices_m) if self.indices is None else self.indices.size) // 3
 
     def move_vertices(self, vertices_m: Float32Array) -> None:
         """Replace all vertices (N, 3) by as many others."""
@@ -102,21 +120,17 @@ class Layer:
     T_world_layer: FloatArray = field(default_factory=lambda: np.eye(4))
     is_visible: bool = True
 
-    def bounds_m(self) -> tuple[FloatArray, FloatArray] | None:
-        """Lower and upper corner (3,) in the world of what has a place; None if nothing has."""
-        corners = [
-            transform_points(self.T_world_layer @ part.T_layer_part, _box_corners(part.vertices_m))
-            for part in self.parts
-            if np.isfinite(part.vertices_m).all(axis=1).any()
+    def outline_m(self) -> FloatArray:
+        """Points (K, 3) in the world within which it lies, tightly; none if nothing of it has a place."""
+        outlines = [
+            transform_points(self.T_world_layer @ part.T_layer_part, part.outline_m()) for part in self.parts
         ]
-        if not corners:
-            return None
-        points = np.vstack(corners)
-        return points.min(axis=0), points.max(axis=0)
+        points: FloatArray = np.vstack([np.empty((0, 3)), *outlines])
+        return points
 
 
-def _box_corners(vertices_m: Float32Array) -> FloatArray:
-    """The eight corners (8, 3) of the axis-aligned box around finite points."""
-    low, high = np.nanmin(vertices_m, axis=0), np.nanmax(vertices_m, axis=0)
+def _box_corners(points_m: FloatArray) -> FloatArray:
+    """The eight corners (8, 3) of the axis-aligned box around points."""
     choose = np.indices((2, 2, 2)).reshape(3, -1).T == 1
-    return np.where(choose, high, low).astype(float)
+    corners: FloatArray = np.where(choose, points_m.max(axis=0), points_m.min(axis=0))
+    return corners

@@ -41,11 +41,9 @@ class FaceTarget:
 
     def hit(self, ray: Ray) -> Hit | None:
         """The first face on a line of sight; 200,000 faces take some milliseconds."""
-        if not len(self.faces):
-            return None
-        faces = self.faces[_may_meet(self.vertices_m, self.faces, ray)]
         candidates = np.flatnonzero(_may_meet(self.vertices_m, self.faces, ray))
-        distances = _distances_to_faces(np.asarray(self.vertices_m, dtype=float)[faces], ray)
+        corners = self.vertices_m[self.faces[candidates]].astype(float)
+        distances = _distances_to_faces(corners, ray)
         if not np.isfinite(distances).any():
             return None
         k = int(np.argmin(distances))
@@ -86,7 +84,8 @@ def _may_meet(vertices_m: AnyArray, faces: AnyArray, ray: Ray) -> npt.NDArray[np
     sides = (offset @ first > 0).astype(np.uint8) | (offset @ second > 0).astype(np.uint8) << 1
     at = [sides[faces[:, k]] for k in range(3)]
     some, every = at[0] | at[1] | at[2], at[0] & at[1] & at[2]
-    return (some ^ every) == 3
+    may_meet: npt.NDArray[np.bool_] = (some ^ every) == 3
+    return may_meet
 
 
 def _distances_to_faces(corners_m: FloatArray, ray: Ray) -> FloatArray:

@@ -80,7 +80,9 @@ def vertex_normals(vertices_m: Float32Array, faces: UInt32Array) -> Float32Array
 
 def _edges(faces: UInt32Array) -> UInt32Array:
     """Each edge (E, 2) once."""
-    pairs = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1).astype(np.uint64)
+    pairs = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1).astype(
+        np.uint64
+    )
     keys = np.unique(pairs[:, 0] << np.uint64(32) | pairs[:, 1])
     return np.column_stack([keys >> np.uint64(32), keys & np.uint64(0xFFFFFFFF)]).astype(np.uint32)
 

@@ -14,6 +14,7 @@ from core.geometry import FloatArray, IntArray
 Shape = tuple[FloatArray, IntArray]
 
 _SIDES = 24
+_NONE = np.empty((0, 3))
 _GOLDEN = (1 + 5**0.5) / 2
 
 
@@ -26,7 +27,8 @@ def box_mesh(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> Shape:
     """
     low, high = np.asarray(min_m, dtype=float), np.asarray(max_m, dtype=float)
     square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    vertices, faces = [], []
+    vertices: list[FloatArray] = []
+    faces = []
     for axis, sign in product(range(3), (-1, 1)):
         corners = np.full((4, 3), float(sign))
         corners[:, [(axis + 1) % 3, (axis + 2) % 3]] = square[:: sign or 1]
@@ -101,7 +103,9 @@ def ball() -> Shape:
     gaps = np.linalg.norm(corners[:, None] - corners[None], axis=2)
     near = np.abs(gaps - 2) < 1e-9
     faces = [
-        (i, j, k) for i, j, k in product(range(12), repeat=3) if i < j < k and near[i, j] and near[j, k] and near[i, k]
+        (i, j, k)
+        for i, j, k in product(range(12), repeat=3)
+        if i < j < k and near[i, j] and near[j, k] and near[i, k]
     ]
     return _divided(corners, _outwards(corners, np.array(faces)))
 
@@ -118,13 +122,15 @@ def merged(shapes: Sequence[Shape]) -> Shape:
     """Several surfaces as one."""
     starts = np.cumsum([0, *(len(vertices) for vertices, _ in shapes)])
     faces = [faces + start for (_, faces), start in zip(shapes, starts, strict=False)]
-    return np.vstack([vertices for vertices, _ in shapes]), np.vstack(faces)
+    return np.vstack([_NONE, *(vertices for vertices, _ in shapes)]), np.vstack([_NONE.astype(int), *faces])
 
 
 def box_edges(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> FloatArray:
     """The twelve edges (24, 3) of a box, two points each."""
     corners = np.array(list(product((0, 1), repeat=3)), dtype=float)
-    pairs = [(a, b) for a, b in product(range(8), repeat=2) if a < b and np.abs(corners[a] - corners[b]).sum() == 1]
+    pairs = [
+        (a, b) for a, b in product(range(8), repeat=2) if a < b and np.abs(corners[a] - corners[b]).sum() == 1
+    ]
     low, high = np.asarray(min_m, dtype=float), np.asarray(max_m, dtype=float)
     edges: FloatArray = low + corners[np.array(pairs).ravel()] * (high - low)
     return edges

@@ -1,0 +1,24 @@
+"""The pipeline's stages in the words of whoever waits for them."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QCoreApplication
+
+
+def stage_words(stage: str) -> str:
+    """Return what is being done, for the job bar; the stage's own name if it is a new one."""
+    translate = QCoreApplication.translate
+    words = {
+        "import": translate("Stage", "Reading the images"),
+        "scan": translate("Stage", "Taking views"),
+        "reconstruction": translate("Stage", "Reconstructing the surface"),
+        "quality": translate("Stage", "Judging the scan"),
+        "collision": translate("Stage", "Making a body for the physics"),
+        "containability": translate("Stage", "Dropping candies"),
+        "pouring": translate("Stage", "Imagining pours"),
+        "motion": translate("Stage", "Checking the arm's motions"),
+        "evidence": translate("Stage", "Rendering pictures"),
+        "pour": translate("Stage", "Pouring"),
+        "outcome": translate("Stage", "Counting candies"),
+    }
+    return words.get(stage, stage.capitalize())

@@ -1,0 +1,78 @@
+"""A few facts, one a row: what it is, its value, and what it was before."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QGridLayout, QLabel, QWidget
+
+from app.gui.theme import GRID_PX
+from app.gui.views.painting import tabular
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A row.
+
+    Attributes:
+        title: what it is.
+        value: with its unit.
+        tooltip: what it means and where it comes from.
+        before: its value in the last result; empty if there is none to compare with.
+        is_wide: whether the value takes the room of what was before, too.
+    """
+
+    title: str
+    value: str
+    tooltip: str = ""
+    before: str = ""
+    is_wide: bool = False
+
+
+class FactGrid(QWidget):
+    """Rows of facts; the column with what was before is there when there is something in it."""
+
+    def __init__(self, name: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setObjectName(name)
+        self._facts: tuple[Fact, ...] = ()
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid.setHorizontalSpacing(2 * GRID_PX)
+        self._grid.setVerticalSpacing(GRID_PX // 2)
+        self._grid.setColumnStretch(3, 1)
+
+    @property
+    def facts(self) -> tuple[Fact, ...]:
+        """What is shown."""
+        return self._facts
+
+    def set_facts(self, facts: Sequence[Fact]) -> None:
+        """Show other facts."""
+        if tuple(facts) == self._facts:
+            return
+        self._facts = tuple(facts)
+        while (item := self._grid.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.deleteLater()
+        if any(fact.before for fact in facts):
+            self._put(0, 1, self.tr("now"), "muted")
+            self._put(0, 2, self.tr("last"), "muted")
+        for row, fact in enumerate(facts, start=1):
+            self._put(row, 0, fact.title, "muted", fact.tooltip)
+            self._put(row, 1, fact.value, "", fact.tooltip, 3 if fact.is_wide else 1)
+            self._put(row, 2, fact.before, "muted", fact.tooltip)
+
+    def _put(self, row: int, column: int, text: str, role: str, tip: str = "", span: int = 1) -> None:
+        if not text:
+            return
+        label = QLabel(text)
+        label.setToolTip(tip)
+        if role:
+            label.setProperty("role", role)
+        if column:
+            label.setFont(tabular(self.font()))
+            label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._grid.addWidget(label, row, column, 1, span)

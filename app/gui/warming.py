@@ -1,0 +1,36 @@
+"""Imports that take their time run in a thread once the window is on the screen, so that nobody waits."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, QThread, Signal
+from typing_extensions import override
+
+from app.gui.pages.registry import OTHERS, WORK, import_page
+
+
+class _Importing(QThread):
+    """Imports the pages' modules one after the other."""
+
+    @override
+    def run(self) -> None:
+        for key in (*WORK, *OTHERS):
+            import_page(key)
+
+
+class Warming(QObject):
+    """Tells when the pages can be made without a pause."""
+
+    done = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._thread = _Importing(self)
+        self._thread.finished.connect(self.done)
+
+    def start(self) -> None:
+        """Begin."""
+        self._thread.start()
+
+    def wait(self) -> None:
+        """Return when it has ended."""
+        self._thread.wait()

@@ -1,0 +1,257 @@
+"""The window: the frame around the pages, and which page is shown. It decides nothing about the work."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtGui import QCloseEvent
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
+from typing_extensions import override
+
+from app.gui.desk.desk import Desk
+from app.gui.desk.jobs import RunningJob
+from app.gui.desk.memory import Memory
+from app.gui.desk.page_states import page_states
+from app.gui.frame.job_bar import JobBar
+from app.gui.frame.log_drawer import LogDrawer
+from app.gui.frame.message_bar import MessageBar
+from app.gui.frame.next_step import next_step
+from app.gui.frame.tab_list import TabList
+from app.gui.frame.top_bar import TopBar
+from app.gui.pages.page import Page, SplitView
+from app.gui.pages.registry import OTHERS, WORK, make_page, tab_facts
+from app.gui.pages.welcome.page import WelcomePage
+from app.gui.warming import Warming
+from app.jobs.messages import Failed, FailureKind
+
+SMALLEST_PX = (1100, 700)
+USUAL_PX = (1280, 800)
+STARTED_BY_NEXT = ("scan", "reconstruction", "imagination")
+"""Pages whose work begins with the click on "Next"; nothing that moves a real arm does."""
+
+
+class MainWindow(QMainWindow):
+    """Everything the user sees.
+
+    Signals: `ready` once all that takes its time at the start is done.
+    """
+
+    ready = Signal()
+
+    def __init__(self, memory: Memory) -> None:
+        super().__init__()
+        self.setWindowTitle("Poursight")
+        self.setMinimumSize(*SMALLEST_PX)
+        self.resize(*USUAL_PX)
+        self.memory = memory
+        self.desk = Desk(self)
+        self._failed_page: str | None = None
+        self._asks_before_closing = True
+        self._pages: dict[str, Page] = {}
+        self._stack = QStackedWidget()
+        self._tabs = TabList(tuple(map(tab_facts, WORK)), tuple(map(tab_facts, OTHERS)))
+        self.messages = MessageBar()
+        self.log = LogDrawer(self.desk.jobs)
+        self.job_bar = JobBar(self.desk.jobs)
+        self.top_bar = TopBar(self.desk, self)
+        self.welcome = WelcomePage(self.desk, memory)
+        self._stack.addWidget(self.welcome)
+        self._warming = Warming(self)
+        self._lay_out()
+        self._connect()
+        self._show_states()
+
+    def begin(self) -> None:
+        """Start what takes its time; the window is on the screen by now."""
+        self.desk.prepare()
+        self._warming.done.connect(self.ready)
+        self._warming.start()
+
+    @property
+    def shown(self) -> str:
+        """Key of the page that is shown."""
+        page = self._stack.currentWidget()
+        return "" if page is None else page.objectName()
+
+    def page(self, key: str) -> Page:
+        """Return a page, which is made when it is first asked for."""
+        if key == WelcomePage.KEY:
+            return self.welcome
+        if key not in self._pages:
+            page = make_page(key, self.desk)
+            self._restore_split(page)
+            self._stack.addWidget(page)
+            self._pages[key] = page
+        return self._pages[key]
+
+    def show_page(self, key: str) -> None:
+        """Show a page."""
+        self._stack.setCurrentWidget(self.page(key))
+        self._tabs.choose(key)
+        self._show_next()
+
+    def go_on(self, key: str) -> None:
+        """Show a page and, where that moves nothing real, press its button."""
+        self.show_page(key)
+        if key in STARTED_BY_NEXT and (key != "scan" or self.desk.cell.is_simulated):
+            self.page(key).press_primary()
+
+    def reset_layout(self) -> None:
+        """Give window and pages their usual sizes."""
+        self.showNormal()
+        self.resize(*USUAL_PX)
+        for split in self.findChildren(SplitView):
+            split.reset()
+
+    def offer_cut_off_session(self) -> None:
+        """After an end that nobody wished, offer the session that was open."""
+        last = self.memory.last_session
+        if self.memory.was_cut_off and last is not None:
+            self.messages.say(
+                self.tr(
+                    "Poursight was ended while the session '{name}' was open; what was finished in it is "
+                    "kept."
+                ).format(name=last.name),
+                action=self.tr("Open it"),
+                do=partial(self.desk.open_session, last),
+            )
+
+    def close_without_asking(self) -> None:
+        """End the work that is under way, and the program."""
+        self._asks_before_closing = False
+        self.close()
+
+    @override
+    def closeEvent(self, event: QCloseEvent) -> None:
+        is_busy = not self.desk.jobs.is_idle
+        if is_busy and self._asks_before_closing and not self._may_stop_work():
+            event.ignore()
+            return
+        self._keep_layout()
+        self.memory.keep_session(None)
+        self.desk.close()
+        self._warming.wait()
+        super().closeEvent(event)
+
+    def _may_stop_work(self) -> bool:
+        job = self.desk.jobs.running
+        box = QMessageBox(self)
+        box.setObjectName("closing")
+        box.setWindowTitle(self.tr("Work is under way"))
+        title = job.title if job is not None else ""
+        box.setText(self.tr("'{title}' is still under way. Stop it and close?").format(title=title))
+        box.setInformativeText(self.tr("What was finished before is kept; a moving arm is stopped."))
+        stop = box.addButton(self.tr("Stop and close"), QMessageBox.ButtonRole.AcceptRole)
+        stay = box.addButton(self.tr("Keep working"), QMessageBox.ButtonRole.RejectRole)
+        box.setDefaultButton(stay)
+        box.exec()
+        if box.clickedButton() is not stop:
+            return False
+        self.desk.arm.stop()
+        return True
+
+    def _lay_out(self) -> None:
+        middle = QHBoxLayout()
+        middle.setSpacing(0)
+        middle.addWidget(self._tabs)
+        middle.addWidget(self._stack, 1)
+        column = QVBoxLayout()
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.top_bar)
+        column.addWidget(self.messages)
+        column.addLayout(middle, 1)
+        column.addWidget(self.log)
+        column.addWidget(self.job_bar)
+        whole = QWidget()
+        whole.setLayout(column)
+        self.setCentralWidget(whole)
+
+    def _connect(self) -> None:
+        desk = self.desk
+        self._tabs.chosen.connect(self.show_page)
+        desk.page_wanted.connect(self.show_page)
+        desk.told.connect(self._tell)
+        desk.workspace.session_changed.connect(self._on_session)
+        desk.workspace.stages_changed.connect(self._show_states)
+        desk.jobs.started.connect(self._on_started)
+        desk.jobs.finished.connect(self._on_finished)
+        desk.jobs.failed.connect(self._on_failed)
+        self.job_bar.log_wanted.connect(self.log.setVisible)
+        self.job_bar.next_wanted.connect(self.go_on)
+        self.top_bar.stop.pressed.connect(self.stop)
+
+    def stop(self) -> None:
+        """STOP: the arm first, by every way there is; then the work that moved it."""
+        self.desk.arm.stop()
+        self.log.add(self.tr("STOP was pressed."))
+        job = self.desk.jobs.running
+        if job is not None and job.host is not self.desk.session_host:
+            self.desk.jobs.cancel()
+
+    def _tell(self, sentence: str) -> None:
+        self.messages.say(sentence)
+        self.log.add(sentence)
+
+    def _on_session(self) -> None:
+        self._failed_page = None
+        folder = self.desk.workspace.folder
+        if folder is not None:
+            self.memory.keep_session(folder)
+        self.setWindowTitle("Poursight" if folder is None else f"{folder.name} – Poursight")
+        self.messages.hide()
+        if folder is None:
+            self.show_page(WelcomePage.KEY)
+        elif self.shown == WelcomePage.KEY:
+            self.show_page("scan")
+
+    def _on_started(self, _job: RunningJob) -> None:
+        self._failed_page = None
+        self.messages.hide()
+        self._show_states()
+
+    def _on_finished(self, _job: RunningJob, _result: object) -> None:
+        self._show_states()
+
+    def _on_failed(self, job: RunningJob, failed: Failed) -> None:
+        if failed.kind is not FailureKind.CANCELLED:
+            self._failed_page = job.page
+        self.messages.say(
+            failed.sentence,
+            state="stale" if failed.kind is FailureKind.CANCELLED else "failed",
+            details=failed.details,
+            action=self.tr("Try again"),
+            do=job.start_again,
+        )
+        self._show_states()
+
+    def _show_states(self) -> None:
+        job = self.desk.jobs.running
+        states = page_states(self.desk.workspace, job.page if job is not None else None, self._failed_page)
+        for key, state in states.items():
+            self._tabs.set_state(key, state)
+        self._show_next()
+
+    def _show_next(self) -> None:
+        workspace = self.desk.workspace
+        if workspace.session is None:
+            self.job_bar.show_next(None)
+            return
+        job = self.desk.jobs.running
+        states = page_states(workspace, job.page if job is not None else None, None)
+        self.job_bar.show_next(next_step(states, workspace.is_container, self.shown))
+
+    def _restore_split(self, page: Page) -> None:
+        split = page.findChild(SplitView)
+        sizes = self.memory.split(page.KEY)
+        if split is not None and sizes is not None:
+            # The page has its size only when it is laid out; before, sizes would be scaled from nothing.
+            QTimer.singleShot(0, split, lambda: split.setSizes(sizes))
+
+    def _keep_layout(self) -> None:
+        self.memory.geometry = self.saveGeometry()
+        for key, page in self._pages.items():
+            split = page.findChild(SplitView)
+            if split is not None and page.isVisibleTo(self):
+                self.memory.keep_split(key, split.sizes())

@@ -1,0 +1,1 @@
+"""The sessions of this computer, found again: list, compare, export, delete (no Qt here)."""

@@ -1,0 +1,195 @@
+"""What a list of sessions says of one of them, read from its small files alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from pathlib import Path
+
+from app.library.files import size_bytes
+from app.library.stages import current_records
+from app.library.thumbnail import current_thumbnail
+from core.errors import PoursightError
+from core.files import read_json
+from core.session import Session, StageRecord
+from core.session.operator_choice import read_operator_choice
+from core.session.pour_runs import PourRun, pour_runs
+
+UNFINISHED_SCAN = "scan-in-progress"
+"""`app.scanning.IN_PROGRESS`, without what that module imports."""
+
+
+@dataclass(frozen=True)
+class PourScore:
+    """P of one pour: `i` its direction, `j` its distance, `p` the share that lands inside, 0 to 1."""
+
+    i: int
+    j: int
+    p: float
+
+
+@dataclass(frozen=True)
+class SessionSummary:
+    """A session on a card. What is not known (yet) is None, or empty.
+
+    Attributes:
+        path: its folder.
+        name: what people call it.
+        created: ISO 8601 time, UTC.
+        source: where the object is from, such as "scan of mug, simulated cell".
+        n_views: of the scan; 0 without one.
+        is_open_container: the verdict.
+        omega: Omega (Eq. 1).
+        omega_threshold: Omega_thr it was held against.
+        best: the imagined pour with the largest P; among equals the chosen one.
+        chosen: the pour to make: the operator's, else the arm's, else the paper's rule's.
+        operator_reason: why the operator chose it; empty if nobody did.
+        n_runs: pours that an arm made or began.
+        outcome: of the newest run that has one, as a sentence; without any, how the newest run ended.
+        n_spilled: candies spilled in it.
+        stages: finished ones that belong together, in the order of the work.
+        size_bytes: on the disk.
+        thumbnail: a picture of 320 x 240; None if it has yet to be made.
+        problem: why it cannot be read, as a sentence.
+    """
+
+    path: Path
+    name: str
+    created: str
+    source: str = ""
+    n_views: int = 0
+    is_open_container: bool | None = None
+    omega: float | None = None
+    omega_threshold: float | None = None
+    best: PourScore | None = None
+    chosen: PourScore | None = None
+    operator_reason: str = ""
+    n_runs: int = 0
+    outcome: str = ""
+    n_spilled: int | None = None
+    stages: tuple[str, ...] = ()
+    size_bytes: int = 0
+    thumbnail: Path | None = None
+    problem: str = ""
+
+    @property
+    def verdict_words(self) -> str:
+        """The verdict in words that a search tells apart; empty as long as there is none."""
+        if self.is_open_container is None:
+            return ""
+        return "open container" if self.is_open_container else "not a container"
+
+    @property
+    def created_here(self) -> datetime | None:
+        """When it was made, in this computer's time zone; None if that cannot be read."""
+        try:
+            return datetime.fromisoformat(self.created).astimezone()
+        except ValueError:
+            return None
+
+
+def summarize(folder: Path) -> SessionSummary:
+    """Sum up a session; takes a few milliseconds. What cannot be read gets a summary with a `problem`."""
+    folder = folder.absolute()
+    try:
+        return _summarize(folder)
+    except PoursightError as error:
+        return _unreadable(folder, str(error))
+    except OSError as error:
+        return _unreadable(folder, f"{error.filename} cannot be read ({error.strerror}); make it readable.")
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        said = f"The session {folder} is damaged ({error!r}); run its stages again or delete it."
+        return _unreadable(folder, said)
+
+
+def _summarize(folder: Path) -> SessionSummary:
+    session = Session.open(folder)
+    records = current_records(folder)
+    best, chosen, reason = _pours(folder, records)
+    runs = [run for run in pour_runs(folder) if not run.is_back_off]
+    outcomes = [run.outcome for run in runs if run.outcome is not None]
+    found = (
+        read_json(folder / "containability" / "containability.json") if "containability" in records else {}
+    )
+    return SessionSummary(
+        path=folder,
+        name=session.name,
+        created=session.created,
+        source=_source(folder, records),
+        n_views=_n_views(records),
+        is_open_container=found.get("is_open_container"),
+        omega=found.get("omega"),
+        omega_threshold=found.get("omega_threshold"),
+        best=best,
+        chosen=chosen,
+        operator_reason=reason,
+        n_runs=len(runs),
+        outcome=outcomes[-1].sentence if outcomes else _end_of_last(runs),
+        n_spilled=outcomes[-1].n_spilled if outcomes else None,
+        stages=tuple(records),
+        size_bytes=size_bytes(folder),
+        thumbnail=current_thumbnail(folder, records),
+    )
+
+
+def _unreadable(folder: Path, problem: str) -> SessionSummary:
+    try:
+        changed_s = folder.stat().st_mtime
+    except OSError:
+        changed_s = 0.0
+    created = datetime.fromtimestamp(changed_s, timezone.utc).isoformat(timespec="seconds")
+    return SessionSummary(folder, folder.name, created, problem=problem)
+
+
+def _source(folder: Path, records: Mapping[str, StageRecord]) -> str:
+    if "mesh" in records:
+        return f"mesh {_file_name(records['mesh'])}".rstrip()
+    if "scan" not in records:
+        return "unfinished scan" if (folder / UNFINISHED_SCAN).is_dir() else ""
+    scan = records["scan"]
+    cell = scan.parameters.get("cell")
+    if cell is None:
+        return f"imported scan {_file_name(scan)}".rstrip()
+    thing = scan.parameters.get("object")
+    return f"scan of {Path(thing).name}, {cell['name']}" if thing else f"scan, {cell['name']}"
+
+
+def _file_name(record: StageRecord) -> str:
+    return Path(record.parameters.get("source", "")).name
+
+
+def _n_views(records: Mapping[str, StageRecord]) -> int:
+    return sum(name.endswith(".color.png") for name in records["scan"].files) if "scan" in records else 0
+
+
+def _pours(
+    folder: Path, records: Mapping[str, StageRecord]
+) -> tuple[PourScore | None, PourScore | None, str]:
+    """Return the best and the chosen pour, and why a person chose it if one did."""
+    pouring, before = records.get("pouring"), records.get("containability")
+    if pouring is None or before is None or "pours.json" not in pouring.files:
+        return None, None, ""
+    if pouring.parameters != before.parameters:  # the program was ended between the two
+        return None, None, ""
+    p: list[list[float]] = read_json(folder / "pouring" / "pours.json")["p"]
+    place, reason = _chosen_place(folder, records)
+    chosen = None if place is None else PourScore(*place, p[place[0]][place[1]])
+    scores = [PourScore(i, j, ratio) for i, row in enumerate(p) for j, ratio in enumerate(row)]
+    return max(scores, key=lambda score: (score.p, score == chosen)), chosen, reason
+
+
+def _chosen_place(folder: Path, records: Mapping[str, StageRecord]) -> tuple[tuple[int, int] | None, str]:
+    """Return (i, j) of the pour to make: a person's, the arm's or the paper's; and the person's reason."""
+    operator = read_operator_choice(folder, records["pouring"].digest)
+    if operator is not None:
+        return (operator.i, operator.j), operator.reason
+    choice_file = (
+        folder / "motion" / "motion.json" if "motion" in records else folder / "pouring" / "choice.json"
+    )
+    table = read_json(choice_file)["choice"]
+    return (None if table is None else (table["i"], table["j"])), ""
+
+
+def _end_of_last(runs: list[PourRun]) -> str:
+    return runs[-1].sentence if runs else ""

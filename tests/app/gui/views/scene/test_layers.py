@@ -1,0 +1,172 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.gui.theme import LIGHT
+from app.gui.views.scene import Frustum
+from app.gui.views.scene.arm import Arm
+from app.gui.views.scene.camera import Camera
+from app.gui.views.scene.candies import Candies
+from app.gui.views.scene.crop_box import CropBox
+from app.gui.views.scene.frusta import frusta_layer
+from app.gui.views.scene.layers import label_layer, line_layer, points_layer
+from core.geometry import look_at, make_pose
+from core.motion.arm_models import UR5
+from core.motion.arm_shape import Capsule
+from core.motion.kinematics import flange_pose
+
+SIZE = (900, 600)
+STATES = ("pending", "taken", "poor", "failed")
+
+
+def candies(n=4, kept=None):
+    made = Candies(n, 0.01, kept)
+    made.move(np.arange(3 * n, dtype=float).reshape(n, 3))
+    return made
+
+
+def test_kept_and_lost_candies_differ_in_shape_and_colour():
+    part = candies(2, np.array([True, False])).layer.parts[0]
+    n_faces = part.n_triangles
+    assert n_faces == 80 + 8
+    colors = part.paint.colors(LIGHT)
+    assert (colors[0] != colors[-1]).any()
+
+
+def test_candies_are_where_they_are_put():
+    made = candies()
+    outline = made.layer.outline_m()
+    assert outline.min(axis=0) == pytest.approx((0, 1, 2), abs=0.011)
+    assert outline.max(axis=0) == pytest.approx((9, 10, 11), abs=0.011)
+
+
+def test_a_candy_without_a_place_is_neither_seen_nor_picked():
+    made = candies()
+    made.move(np.array([[0, 0, 0], [np.nan] * 3, [0, 0, 1], [np.nan] * 3], dtype=float))
+    placed = np.isfinite(made.layer.parts[0].vertices_m).all(axis=1)
+    assert placed.sum() == 2 * 42
+    ray = Camera(center_m=(0, 0, 1)).ray((450, 300), SIZE)
+    assert made.layer.target.hit(ray)[1] == 2
+
+
+def test_moving_candies_makes_no_new_faces():
+    made = candies()
+    part = made.layer.parts[0]
+    indices, revision = part.indices, part.revision
+    made.move(np.zeros((4, 3)))
+    assert part.indices is indices
+    assert part.revision > revision
+
+
+def test_there_may_be_no_candies():
+    made = candies(0)
+    assert len(made.layer.outline_m()) == 0
+    assert made.layer.target.hit(Camera().ray((450, 300), SIZE)) is None
+
+
+def frusta(*states, selected=None):
+    return [
+        Frustum(f"frame-{k}", look_at((0.5, 0.1 * k, 0.4), (0.5, 0.1 * k, 0)), state, k == selected)
+        for k, state in enumerate(states)
+    ]
+
+
+def looks(*states, selected=None):
+    layer = frusta_layer(frusta(*states, selected=selected))
+    lines = [part for part in layer.parts if part.kind == "lines"]
+    surfaces = [part for part in layer.parts if part.kind == "surface"]
+    return sum(len(part.vertices_m) for part in lines), sum(part.n_triangles for part in surfaces)
+
+
+def test_the_state_of_a_view_is_told_by_its_shape():
+    assert len({looks(state) for state in STATES}) == len(STATES)
+
+
+def test_the_state_of_a_view_is_told_by_its_colour():
+    colors = [tuple(frusta_layer(frusta(state)).parts[0].paint.colors(LIGHT)[0]) for state in STATES]
+    assert len(set(colors)) == len(STATES)
+
+
+def test_a_selected_view_has_thicker_lines():
+    layer = frusta_layer(frusta("taken", "taken", selected=1))
+    widths = [part.size_px for part in layer.parts if part.kind == "lines"]
+    assert widths == sorted(widths) and widths[0] < widths[1]
+
+
+def test_a_click_tells_which_view():
+    layer = frusta_layer(frusta(*STATES))
+    camera = Camera(center_m=(0.5, 0.2, 0.35), distance_m=1).looking_from("top")
+    assert layer.target.hit(camera.ray((450, 300), SIZE))[1] == 2
+
+
+def test_no_views_no_parts():
+    assert frusta_layer([]).parts == ()
+
+
+def test_an_arm_ends_where_its_tool_is():
+    joints = np.array([0.3, -1.6, 1.6, -1.5, -1.57, 0.2])
+    arm = Arm(UR5, [Capsule("tool", 6, (0, 0, 0), (0, 0, 0.2), 0.01)], is_ghost=False)
+    arm.move(joints)
+    tip = flange_pose(UR5, joints) @ (0, 0, 0.21, 1)
+    gaps = np.linalg.norm(arm.layer.outline_m() - tip[:3], axis=1)
+    assert gaps.min() < 1e-6
+
+
+def test_a_ghost_is_see_through_and_of_another_colour():
+    colors = [Arm(UR5, [], is_ghost).layer.parts[0].paint.colors(LIGHT) for is_ghost in (False, True)]
+    assert colors[0][3] == 1 and colors[1][3] < 0.6
+    assert (colors[0][:3] != colors[1][:3]).any()
+
+
+def box():
+    return CropBox((-0.1, -0.2, 0), (0.1, 0.2, 0.3), has_handles=True)
+
+
+@pytest.mark.parametrize("handle", range(6))
+def test_a_dragged_handle_moves_its_side_and_no_other(handle):
+    made, camera = box(), Camera(center_m=(0, 0, 0.15), distance_m=1.5, azimuth_deg=-50, elevation_deg=25)
+    before = np.concatenate([made.min_m, made.max_m])
+    side, axis = divmod(handle, 3)
+    goal = np.array([0, 0, 0.15])
+    goal[axis] = before[handle] + 0.05
+    made.drag(handle, camera.ray(tuple(camera.project(goal[None], SIZE)[0]), SIZE))
+    after = np.concatenate([made.min_m, made.max_m])
+    expected = before.copy()
+    expected[handle] += 0.05
+    assert after == pytest.approx(expected)
+    assert made.layer.outline_m()[:, axis].max() == pytest.approx(after[3 + axis])
+
+
+def test_handles_are_found_under_their_pixels():
+    made, camera = box(), Camera(center_m=(0, 0, 0.15), distance_m=1.5)
+    top = camera.project(np.array([[0, 0, 0.3]]), SIZE)[0]
+    assert made.handle_at(tuple(top), camera, SIZE) == 5
+    assert made.handle_at((5, 5), camera, SIZE) is None
+
+
+def test_a_box_never_turns_over():
+    made, camera = box(), Camera(center_m=(0, 0, 0.15), distance_m=1.5)
+    below = camera.project(np.array([[0, 0, -0.2]]), SIZE)[0]
+    made.drag(5, camera.ray(tuple(below), SIZE))
+    assert made.max_m[2] > made.min_m[2]
+
+
+def test_a_box_without_handles_has_none():
+    made = CropBox((0, 0, 0), (1, 1, 1), has_handles=False)
+    camera = Camera(center_m=(0.5, 0.5, 0.5), distance_m=3)
+    at = camera.project(np.array([[0.5, 0.5, 1.0]]), SIZE)[0]
+    assert made.handle_at(tuple(at), camera, SIZE) is None
+    assert len(made.layer.parts) == 1
+
+
+@pytest.mark.parametrize("n", [0, 1, 2, 5])
+def test_a_line_has_one_segment_less_than_points(n):
+    layer = line_layer(np.zeros((n, 3)), "accent", 2)
+    assert len(layer.parts[0].indices) == 2 * max(n - 1, 0)
+
+
+def test_poses_move_labels_and_points():
+    for layer in (label_layer((1, 2, 3), "pivot"), points_layer([(1, 2, 3)], "accent", 5)):
+        layer.T_world_layer = make_pose(np.eye(3), (10, 0, 0))
+        assert layer.outline_m().tolist() == [[11, 2, 3]]

@@ -1,0 +1,268 @@
+"""The arm's host: connect, plan, pour, stop, come back; with the real driver and a simulated controller."""
+
+from __future__ import annotations
+
+import queue
+import socket
+import time
+
+import numpy as np
+import pytest
+
+from app.jobs.arm_news import ArmConnected, ArmGone, ArmStatus, MoveProgress, StopDone
+from app.jobs.arm_work import ArmWork
+from app.jobs.host import Host
+from app.jobs.messages import Failed, FailureKind, Finished, News
+from app.jobs.session_work import SessionTask
+from app.remembered import remembered_parameters
+from core.errors import SessionError
+from core.motion.pour.plan import MOVES
+from core.parameters import apply_settings
+from core.session import Session
+from core.session.operator_choice import write_operator_choice
+from core.session.pour_runs import pour_runs
+from hardware.cell import read_cell
+from hardware.simulation.ur_controller.addresses import CONTROL_PORT
+from tests.app.gui.sessions import copied, make_session
+
+pytest.importorskip("rtde_control")
+
+NAMES = [name for name, *_ in MOVES]
+
+
+@pytest.fixture(scope="module")
+def made_mug(tmp_path_factory):
+    return make_session(tmp_path_factory.mktemp("mug") / "mug", "mug")
+
+
+@pytest.fixture
+def task(made_mug, tmp_path):
+    folder = copied(made_mug, tmp_path / "mug")
+    preset, parameters = remembered_parameters(folder)
+    return SessionTask(folder, parameters, preset)
+
+
+@pytest.fixture(scope="module")
+def cell():
+    settings = read_cell()
+    hurried = settings.simulation.model_copy(update={"speed_up": 8.0})
+    return settings.model_copy(update={"simulation": hurried})
+
+
+class Arm:
+    """A host, and what it told."""
+
+    def __init__(self):
+        self.heard = queue.Queue()
+        self.news = []
+        self.host = Host(ArmWork, "moves the arm", self.heard.put)
+
+    def do(self, method, *arguments, until=None):
+        """Carry out a job; return how it ended, or the news that was waited for."""
+        self.host.start(method, *arguments)
+        return self.hear(until)
+
+    def hear(self, until=None, within_s=60.0):
+        deadline_s = time.monotonic() + within_s
+        while True:
+            message = self.heard.get(timeout=deadline_s - time.monotonic())
+            if isinstance(message, News):
+                self.news.append(message.payload)
+                if until is not None and until(message.payload):
+                    return message.payload
+            elif isinstance(message, Finished):
+                return message.result
+            elif isinstance(message, Failed):
+                return message
+
+    def told(self, kind):
+        return [news for news in self.news if isinstance(news, kind)]
+
+    def status(self):
+        """The next one."""
+        return self.hear(lambda news: isinstance(news, ArmStatus))
+
+    def controller(self, line):
+        """Give the simulated controller a line."""
+        address = self.told(ArmConnected)[-1].stop_address
+        with socket.create_connection((address, CONTROL_PORT), 5) as connection:
+            connection.sendall(line.encode() + b"\n")
+            return connection.makefile().readline()
+
+
+@pytest.fixture
+def arm():
+    arm = Arm()
+    yield arm
+    arm.host.close()
+
+
+@pytest.fixture
+def planned(arm, task, cell):
+    assert arm.do(ArmWork.connect, cell) is None
+    return arm.do(ArmWork.plan, task, cell)
+
+
+def during(name):
+    return lambda news: isinstance(news, MoveProgress) and news.name == name and news.fraction > 0.2
+
+
+def stopped_in(arm, planned, name):
+    arm.do(ArmWork.pour, planned.number, time.monotonic(), until=during(name))
+    arm.host.order(ArmWork.stop)
+    return arm.hear()
+
+
+def test_connect_plan_and_pour_to_the_end(arm, task, planned):
+    (connected,) = arm.told(ArmConnected)
+    assert connected.is_simulated
+    assert connected.pid == arm.host.pid
+    assert connected.stop_address.startswith("127.")
+    assert planned.plan.clearance_m > 0.02
+    assert "The arm can make" in planned.note
+    assert planned.expires_s > time.monotonic() + 500
+    low_m = planned.mouth_m[:, 2].min()
+    assert planned.pivot_m[2] - 0.1 < low_m < planned.pivot_m[2] + 0.1, "the mouth comes down to the pivot"
+
+    arm.do(ArmWork.pour, planned.number, time.monotonic(), until=during("lift"))
+    with pytest.raises(SessionError), Session.open(task.folder):
+        pass
+    assert arm.status().is_gripper_closed
+    folder = arm.hear()
+    (run,) = pour_runs(task.folder)
+    assert (run.folder, run.is_done) == (folder, True)
+
+    progress = arm.told(MoveProgress)
+    names = list(dict.fromkeys(news.name for news in progress))
+    assert [name for name in NAMES if name in names] == names, "in their order"
+    assert len(names) >= 12, "but for moves that are over before they are told"
+    assert [news.done_s for news in progress] == sorted(news.done_s for news in progress)
+    assert progress[-1].left_s < 0.5
+    off_m = [news.pivot_off_m for news in progress if news.pivot_off_m is not None]
+    assert off_m
+    assert max(off_m) < 0.0005
+    assert {news.name for news in progress if news.pivot_off_m is not None} == {"pour"}
+
+    status = arm.status()
+    assert (status.problem, status.must_back_off, status.is_gripper_closed) == ("", False, False)
+    np.testing.assert_allclose(status.state.joints_rad, planned.plan.moves[-1].trajectory.end_rad, atol=2e-3)
+
+    again = arm.do(ArmWork.pour, planned.number, time.monotonic())
+    assert "not the plan that was made last" in again.sentence
+    assert len(pour_runs(task.folder)) == 1
+
+
+def test_a_stop_on_the_way_leads_back_to_the_station_and_to_a_new_plan(arm, task, cell, planned):
+    failed = stopped_in(arm, planned, "carry")
+    assert failed.kind in (FailureKind.EXPLAINED, FailureKind.CANCELLED)
+    assert "stopped" in failed.sentence.lower()
+    status = arm.status()
+    assert status.must_back_off
+    assert status.is_gripper_closed
+    assert "make it ready again" in status.problem
+    assert any(news.sentence == "" for news in arm.told(StopDone))
+
+    for job, words in (
+        ((ArmWork.plan, task, cell), "make it ready"),
+        ((ArmWork.pour, planned.number, time.monotonic()), "not the plan that was made last"),
+        ((ArmWork.move_gripper, False, time.monotonic()), "make it ready"),
+    ):
+        assert words in arm.do(*job).sentence
+    before = arm.status().state.joints_rad
+    assert arm.do(ArmWork.recover) is None
+    status = arm.status()
+    assert (status.problem, status.must_back_off) == ("", True)
+    np.testing.assert_allclose(status.state.joints_rad, before, atol=1e-3)
+    assert "back off first" in arm.do(ArmWork.move_gripper, False, time.monotonic()).sentence
+    assert "back off first" in arm.do(ArmWork.plan, task, cell).sentence
+
+    back = arm.do(ArmWork.plan_back_off, task)
+    assert [move.name for move in back.moves][-3:] == ["put down", "retreat", "home"]
+    folder = arm.do(ArmWork.back_off, back.number, time.monotonic())
+    assert folder.name == "0002"
+    status = arm.status()
+    assert (status.problem, status.must_back_off, status.is_gripper_closed) == ("", False, False)
+    assert arm.do(ArmWork.plan, task, cell).number > back.number
+
+
+def test_a_stop_before_anything_moved_is_recovered_from_without_a_way_back(arm, task, cell, planned):
+    arm.host.order(ArmWork.stop)
+    arm.hear(lambda news: isinstance(news, ArmStatus) and news.problem)
+    refused = arm.do(ArmWork.pour, planned.number, time.monotonic())
+    assert "make it ready" in refused.sentence
+    assert not pour_runs(task.folder)
+    assert arm.do(ArmWork.recover) is None
+    assert not arm.status().problem
+    assert "not stopped on its way" in arm.do(ArmWork.plan_back_off, task).sentence
+    assert arm.do(ArmWork.plan, task, cell).number > planned.number
+
+
+def test_a_cancelled_pour_stops_the_arm(arm, planned):
+    arm.do(ArmWork.pour, planned.number, time.monotonic(), until=during("to the cup"))
+    arm.host.cancel()
+    failed = arm.hear()
+    assert (failed.kind, failed.sentence) == (
+        FailureKind.CANCELLED,
+        "Stopped on request: the arm stands where it was stopped.",
+    )
+    assert arm.status().must_back_off
+
+
+def test_what_was_confirmed_too_long_ago_or_is_out_of_date_does_not_move(arm, task, cell, planned):
+    late = arm.do(ArmWork.pour, planned.number, time.monotonic() - 5)
+    assert "came too late" in late.sentence
+    planned = arm.do(ArmWork.plan, task, cell)
+    record = Session.open(task.folder).record("pouring")
+    i = (planned.plan.i + 1) % 8
+    write_operator_choice(task.folder, i, planned.plan.j, "nearer", record.digest)
+    other = arm.do(ArmWork.pour, planned.number, time.monotonic())
+    assert "Another pour was chosen" in other.sentence
+    changed = SessionTask(task.folder, apply_settings(task.parameters, {"seed": 7}), "default")
+    assert "imagine again" in arm.do(ArmWork.plan, changed, cell).sentence
+    assert not pour_runs(task.folder)
+
+
+def test_the_gripper_is_moved_by_hand_and_a_closed_one_is_no_start(arm, task, cell, planned):
+    assert arm.do(ArmWork.move_gripper, True, time.monotonic()) is None
+    assert arm.hear(lambda news: isinstance(news, ArmStatus) and news.is_gripper_closed)
+    assert "not the plan" in arm.do(ArmWork.pour, planned.number, time.monotonic()).sentence
+    assert "open the gripper" in arm.do(ArmWork.plan, task, cell).sentence
+    assert arm.do(ArmWork.move_gripper, False, time.monotonic()) is None
+    assert arm.do(ArmWork.plan, task, cell).number > planned.number
+
+
+def test_a_killed_host_takes_the_simulated_arm_with_it_and_another_one_connects(arm, task, cell, planned):
+    address = arm.told(ArmConnected)[-1].stop_address
+    arm.do(ArmWork.pour, planned.number, time.monotonic(), until=during("lay"))
+    arm.host.kill()
+    failed = arm.hear()
+    assert failed.kind is FailureKind.DIED
+    deadline_s = time.monotonic() + 3
+    while is_there(address):
+        assert time.monotonic() < deadline_s
+        time.sleep(0.05)
+    (run,) = pour_runs(task.folder)
+    assert "ended while the arm moved" in run.sentence
+    assert arm.do(ArmWork.connect, cell) is None
+    assert arm.do(ArmWork.plan, task, cell).plan.digest == planned.plan.digest
+
+
+def is_there(address):
+    try:
+        socket.create_connection((address, CONTROL_PORT), 1).close()
+    except OSError:
+        return False
+    return True
+
+
+def test_a_lost_link_is_told_and_connecting_again_works(arm, task, cell):
+    assert "No arm is connected" in arm.do(ArmWork.plan, task, cell).sentence
+    assert arm.do(ArmWork.connect, cell) is None
+    arm.controller("link drop 1")
+    gone = arm.hear(lambda news: isinstance(news, ArmGone))
+    assert "connect again" in gone.sentence
+    assert "No arm is connected" in arm.do(ArmWork.recover).sentence
+    assert arm.do(ArmWork.connect, cell) is None
+    assert not arm.status().problem
+    assert arm.do(ArmWork.disconnect) is None
+    assert arm.told(ArmGone)[-1] == ArmGone()
