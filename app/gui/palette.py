@@ -82,7 +82,7 @@ def style_sheet(theme: Theme) -> str:
     }}
     QPushButton#stop {{
         background: {t.stop}; color: #ffffff; border: 2px solid {t.stop}; border-radius: 6px;
-        font-size: 16pt; font-weight: 800; padding: 0;
+        font-size: 16pt; font-weight: 800; padding: 0; min-height: 58px; min-width: 118px;
     }}
     QPushButton#stop:pressed {{ border-color: #ffffff; }}
     QFrame#top_bar {{ background: {t.surface}; border: none; border-bottom: 1px solid {t.line}; }}

@@ -14,7 +14,7 @@ from typing_extensions import TypeVarTuple, Unpack
 
 from app.jobs.face import JobFace
 from app.jobs.host_process import serve
-from app.jobs.messages import CancelJob, DoNow, Failed, FailureKind, Finished, Message, StartJob
+from app.jobs.messages import CancelJob, DoNow, EndHost, Failed, FailureKind, Finished, Message, StartJob
 from app.jobs.service import Service
 
 S = TypeVar("S", bound=Service)
@@ -45,6 +45,7 @@ class Host(Generic[S]):
         self._context = multiprocessing.get_context("spawn")
         self._process: BaseProcess | None = None
         self._connection: Connection | None = None
+        self._hearing: threading.Thread | None = None
         self._lock = threading.Lock()
 
     @property
@@ -62,7 +63,8 @@ class Host(Generic[S]):
             process.start()
             theirs.close()
             self._process, self._connection = process, ours
-        threading.Thread(target=self._hear, args=(ours,), name=f"{self._name} host", daemon=True).start()
+            self._hearing = threading.Thread(target=self._hear, args=(ours,), name=self._name, daemon=True)
+            self._hearing.start()
 
     def start(
         self, method: Callable[[S, JobFace, Unpack[Arguments]], Any], *arguments: Unpack[Arguments]
@@ -91,16 +93,18 @@ class Host(Generic[S]):
     def close(self) -> None:
         """End the process, with everything it started."""
         with self._lock:
-            process, connection = self._process, self._connection
+            process, connection, hearing = self._process, self._connection, self._hearing
             self._process = self._connection = None
-        if connection is not None:
-            with suppress(OSError):
-                connection.close()
-        if process is not None:
-            process.join(_ENDING_S)
-            if process.is_alive():
-                process.kill()
-                process.join()
+        if process is None or connection is None or hearing is None:
+            return
+        with suppress(OSError):
+            connection.send(EndHost())
+        process.join(_ENDING_S)
+        if process.is_alive():
+            process.kill()
+            process.join()
+        hearing.join()
+        connection.close()
 
     def _send(self, message: StartJob | CancelJob | DoNow) -> None:
         self.open()

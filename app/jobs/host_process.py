@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from app.jobs.face import JobFace
-from app.jobs.messages import CancelJob, DoNow, Failed, FailureKind, Finished, Message, StartJob
+from app.jobs.messages import CancelJob, DoNow, EndHost, Failed, FailureKind, Finished, Message, StartJob
 from app.jobs.service import Service
 from core.errors import Cancelled, PoursightError
 
@@ -39,10 +39,10 @@ class _Host:
     def run(self) -> None:
         threading.Thread(target=self._work, daemon=True).start()
         try:
-            while True:
-                self._hear(self._connection.recv())
+            while not isinstance(message := self._connection.recv(), EndHost):
+                self._hear(message)
         except (EOFError, OSError):
-            pass  # the program closed the connection, or is gone
+            pass  # the program is gone
         self._end()
 
     def _hear(self, message: Any) -> None:

@@ -30,6 +30,11 @@ class DoNow:
 
 
 @dataclass(frozen=True)
+class EndHost:
+    """Stop everything and end the process."""
+
+
+@dataclass(frozen=True)
 class Progressed:
     """`done` of `total` units of a stage are finished."""
 

@@ -152,7 +152,7 @@ class Jobs(QObject):
         """End all processes; nothing is told any more."""
         self._tick.stop()
         self._enforce.stop()
-        self._heard.disconnect(self._hear)
+        self.blockSignals(True)
         for host in self._hosts:
             host.close()
 

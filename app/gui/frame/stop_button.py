@@ -7,7 +7,6 @@ from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QPushButton, QWidget
 
 KEYS = ("F12", "Pause")
-SIDE_PX = 64
 
 
 class StopButton(QPushButton):
@@ -25,7 +24,6 @@ class StopButton(QPushButton):
             ).format(keys=", ".join(KEYS))
         )
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setFixedSize(2 * SIDE_PX, SIDE_PX - 8)
         for key in KEYS:
             shortcut = QShortcut(QKeySequence(key), window)
             shortcut.setContext(Qt.ShortcutContext.ApplicationShortcut)

@@ -1,0 +1,64 @@
+"""What the tabs say, and what comes next."""
+
+from __future__ import annotations
+
+import json
+
+from app.gui.desk.page_states import PageState, page_states
+from app.gui.frame.next_step import next_step
+from core.session.pour_runs import Outcome, write_outcome
+
+
+def _next(workspace, shown="scan"):
+    step = next_step(page_states(workspace, None, None), workspace.is_container, shown)
+    return None if step is None else step.page
+
+
+def test_without_a_session_everything_is_empty(desk):
+    assert {state.word for state in page_states(desk.workspace, None, None).values()} == {"empty"}
+
+
+def test_figures_tell_what_was_found(desk, mug_session):
+    desk.workspace.open(mug_session)
+    states = page_states(desk.workspace, None, None)
+    assert states["scan"].figure == "24 views"
+    assert states["imagination"].figure == "container"
+    assert states["pours"].figure.endswith("%")
+
+
+def test_running_and_failed_pages_are_marked(desk, mug_session):
+    desk.workspace.open(mug_session)
+    states = page_states(desk.workspace, "imagination", "reconstruction")
+    assert states["imagination"].word == "running"
+    assert states["reconstruction"].word == "failed"
+
+
+def test_a_pour_belongs_to_the_imagination_it_was_made_for(desk, mug_session):
+    desk.workspace.open(mug_session)
+    digest = desk.workspace.session.record("pouring").digest
+    run = mug_session / "pours" / "0001"
+    run.mkdir(parents=True)
+    events = [{"kind": "confirmed", "time": "2026-01-01T00:00:00", "imagination": digest}, {"kind": "done"}]
+    (run / "events.jsonl").write_text("\n".join(map(json.dumps, events)))
+    assert page_states(desk.workspace, None, None)["robot"] == PageState("fresh", "poured")
+    write_outcome(run, Outcome(60, 2, "", is_simulated=False, facts={}))
+    assert page_states(desk.workspace, None, None)["robot"] == PageState("fresh", "2 spilled")
+    (run / "events.jsonl").write_text(
+        "\n".join(map(json.dumps, [events[0] | {"imagination": "old"}, events[1]]))
+    )
+    assert page_states(desk.workspace, None, None)["robot"].word == "stale"
+
+
+def test_the_next_step_leads_through_the_work(desk, mug_session, tmp_path):
+    desk.workspace.open(tmp_path / "new")
+    assert _next(desk.workspace) == "scan"
+    desk.workspace.open(mug_session)
+    assert _next(desk.workspace) == "pours"
+    assert _next(desk.workspace, shown="pours") == "robot"
+
+
+def test_nothing_is_poured_into_what_is_no_container(desk, block_session):
+    desk.workspace.open(block_session)
+    assert desk.workspace.is_container is False
+    assert _next(desk.workspace) is None
+    assert page_states(desk.workspace, None, None)["imagination"].figure == "no container"
