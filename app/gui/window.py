@@ -27,6 +27,7 @@ from app.jobs.messages import Failed, FailureKind
 
 SMALLEST_PX = (1100, 700)
 USUAL_PX = (1280, 800)
+MUG = "mug"
 STARTED_BY_NEXT = ("scan", "reconstruction", "imagination")
 """Pages whose work begins with the click on "Next"; nothing that moves a real arm does."""
 
@@ -96,6 +97,18 @@ class MainWindow(QMainWindow):
         self.show_page(key)
         if key in STARTED_BY_NEXT and (key != "scan" or self.desk.cell.is_simulated):
             self.page(key).press_primary()
+
+    def scan_the_mug(self) -> None:
+        """Begin what a newcomer sees first: the mug in the simulated cell."""
+        self.desk.cell.choose(None, then=self._scan_the_mug)
+
+    def _scan_the_mug(self) -> None:
+        from app.gui.pages.scan.page import ScanPage
+
+        page = self.page("scan")
+        if isinstance(page, ScanPage) and self.desk.new_session(MUG):
+            self.show_page("scan")
+            page.scan(MUG)
 
     def reset_layout(self) -> None:
         """Give window and pages their usual sizes."""
@@ -181,6 +194,7 @@ class MainWindow(QMainWindow):
         self.job_bar.log_wanted.connect(self.log.setVisible)
         self.job_bar.next_wanted.connect(self.go_on)
         self.top_bar.stop.pressed.connect(self.stop)
+        self.welcome.mug_wanted.connect(self.scan_the_mug)
 
     def stop(self) -> None:
         """STOP: the arm first, by every way there is; then the work that moved it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,13 +53,15 @@ class CellChoice(QObject):
         remembered = str(QSettings().value(_KEY, ""))
         self.choose(Path(remembered) if remembered else None)
 
-    def choose(self, path: Path | None) -> None:
-        """Read a cell's file and take it; none: the simulated cell."""
+    def choose(self, path: Path | None, then: Callable[[], None] | None = None) -> None:
+        """Read a cell's file and take it, then go on; none: the simulated cell."""
 
         def take(settings: CellSettings) -> None:
             self.path, self.settings = path, settings
             QSettings().setValue(_KEY, "" if path is None else str(path))
             self.changed.emit()
+            if then is not None:
+                then()
 
         def refuse(error: PoursightError) -> None:
             self.failed.emit(str(error))
