@@ -6,8 +6,10 @@ from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QApplication
 
 from app.gui.theme import Theme
+from core.resources import RESOURCES
 
 POINT_SIZE = 10
+_ICONS = RESOURCES / "icons"
 
 
 def apply_theme(application: QApplication, theme: Theme) -> None:
@@ -80,6 +82,21 @@ def style_sheet(theme: Theme) -> str:
     QPushButton[role="link"] {{
         background: transparent; border: none; color: {t.accent}; text-align: left; padding: 2px 0;
     }}
+    QPushButton[role="next"] {{
+        background: transparent; color: {t.accent}; border: 2px solid {t.accent}; font-weight: 600;
+        padding: 6px 16px;
+    }}
+    QPushButton[role="next"]:hover {{ background: {t.raised}; }}
+    QLineEdit {{ border: 1px solid {t.muted}; border-radius: 4px; padding: 3px 4px; background: {t.surface}; }}
+    QLineEdit:focus {{ border-color: {t.accent}; }}
+    QAbstractSpinBox > QLineEdit, QComboBox > QLineEdit {{ border: none; padding: 0; }}
+    QCheckBox::indicator {{
+        width: 16px; height: 16px; border: 1px solid {t.muted}; border-radius: 3px; background: {t.surface};
+    }}
+    QCheckBox::indicator:checked {{
+        background: {t.accent}; border-color: {t.accent}; image: url({_ICONS.as_posix()}/check-{t.name}.svg);
+    }}
+    QCheckBox::indicator:disabled {{ border-color: {t.line}; background: {t.window}; }}
     QPushButton#stop {{
         background: {t.stop}; color: #ffffff; border: 2px solid {t.stop}; border-radius: 6px;
         font-size: 16pt; font-weight: 800; padding: 0; min-height: 58px; min-width: 118px;

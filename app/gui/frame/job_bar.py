@@ -44,7 +44,7 @@ class JobBar(QFrame):
         self._step: NextStep | None = None
         self._next = QPushButton()
         self._next.setObjectName("next")
-        self._next.setProperty("role", "primary")
+        self._next.setProperty("role", "next")
         self._next.clicked.connect(self._go_on)
         row = QHBoxLayout(self)
         row.setContentsMargins(2 * GRID_PX, GRID_PX // 2, GRID_PX, GRID_PX // 2)

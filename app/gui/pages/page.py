@@ -89,6 +89,7 @@ class SidePanel(QFrame):
         self.primary.setProperty("role", "primary")
         self.primary.setMinimumHeight(5 * GRID_PX)
         self._buttons = QHBoxLayout()
+        self._buttons.setSpacing(GRID_PX)
         self._buttons.setContentsMargins(2 * GRID_PX, GRID_PX, 2 * GRID_PX, 2 * GRID_PX)
         self._buttons.addStretch(1)
         self._buttons.addWidget(self.primary)

@@ -173,11 +173,11 @@ class _Delegate(QStyledItemDelegate):
             box.setLeft(mark.right() + _AIR_PX)
             if index.data(_ATTENTION):
                 paint_attention(painter, mark, theme_of(self._view))
-        is_selected = bool(shown.state & QStyle.StateFlag.State_Selected)
         theme = theme_of(self._view)
+        ink = "on_accent" if shown.state & QStyle.StateFlag.State_Selected else "text"
         painter.save()
         painter.setFont(shown.font)
-        painter.setPen(theme.color("on_accent" if is_selected else "text"))
+        painter.setPen(theme.color(ink if self._view.isEnabled() else "muted"))
         draw_elided(painter, box, text, shown.displayAlignment)
         painter.restore()
 

@@ -13,7 +13,7 @@ from PySide6.QtGui import (
     QPaintEvent,
     QPen,
 )
-from PySide6.QtWidgets import QPushButton, QWidget
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.painting import smaller, tabular
@@ -27,8 +27,10 @@ _FALL = 4.0
 _KEYS = (Qt.Key.Key_Space, Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
 
-class HoldButton(QPushButton):
+class HoldButton(QAbstractButton):
     """Press and hold with the mouse, Space or Enter until the ring is full.
+
+    No QPushButton, whose style sheet would decide how small it may be.
 
     Attributes:
         confirmed: held to the end; the only signal that means "do it". Never connect to `clicked`.
@@ -37,11 +39,12 @@ class HoldButton(QPushButton):
     confirmed = Signal()
 
     def __init__(self, text: str, hint: str = "", hold_s: float = 1.5, parent: QWidget | None = None) -> None:
-        """Make one that says `text` and, after an early release, `hint` (default: the text)."""
-        super().__init__(text, parent)
+        """Make one that says `text` and, after an early release, `hint` instead of that nothing happened."""
+        super().__init__(parent)
+        self.setText(text)
         self.setObjectName("hold_button")
         self.setAccessibleName(text)
-        self.setAutoDefault(False)
+        self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._hold_s = hold_s
         self._hint = hint

@@ -173,7 +173,9 @@ class Scrubber(QWidget):
         if section is None or plate.isEmpty():
             return
         theme = theme_of(self)
-        painter.fillRect(plate, theme.color("surface"))
+        painter.setPen(theme.color("muted"))
+        painter.setBrush(theme.color("window"))
+        painter.drawRoundedRect(plate.adjusted(0.5, 0.5, -0.5, -0.5), 3, 3)
         painter.setFont(smaller(self.font()))
         painter.setPen(theme.color("text"))
         painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, section.name)

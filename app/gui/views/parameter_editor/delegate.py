@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QAbstractItemModel, QEvent, QModelIndex, QPointF, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QAbstractItemModel, QEvent, QPointF, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetricsF, QMouseEvent, QPainter, QPen
 from PySide6.QtWidgets import QStyledItemDelegate, QStyleOptionViewItem, QTreeView, QWidget
 
@@ -23,11 +23,11 @@ class ParameterDelegate(QStyledItemDelegate):
 
     Attributes:
         value_entered: (dotted name, value) to set.
-        edit_wanted: the index whose value was clicked.
+        edit_wanted: the dotted name whose value was clicked.
     """
 
     value_entered = Signal(str, object)
-    edit_wanted = Signal(QModelIndex)
+    edit_wanted = Signal(str)
 
     def __init__(self, view: QTreeView) -> None:
         super().__init__(view)
@@ -154,10 +154,11 @@ class ParameterDelegate(QStyledItemDelegate):
     def begin(self, index: Index) -> None:
         """Change a value by click or key: toggle yes or no, open an editor for all others."""
         facts = index.data(ROW_ROLE)
-        if isinstance(facts, RowFacts) and facts.kind == "yes_no":
+        assert isinstance(facts, RowFacts)
+        if facts.kind == "yes_no":
             self.value_entered.emit(facts.name, not facts.value)
         else:
-            self.edit_wanted.emit(index)
+            self.edit_wanted.emit(facts.name)
 
     def createEditor(self, parent: QWidget, _option: QStyleOptionViewItem, index: Index) -> QWidget:
         """Return the editor that fits the value."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QEvent, QSignalBlocker, QSize, Signal
+from PySide6.QtCore import QEvent, QSignalBlocker, QSize, Qt, Signal
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QLineEdit, QVBoxLayout, QWidget
 
 from app.gui.theme import GRID_PX
@@ -64,11 +64,10 @@ class ParameterEditor(QWidget):
         self._none = QLabel(self)
         self._none.setObjectName("parameter_none")
         self._none.setWordWrap(True)
-        self._view = ParameterView(self)
-        self._view.setModel(self._filter)
-        self._view.fit_columns()
-        self._view.expandAll()
-        self._view.parameter_delegate.value_entered.connect(self._model.set_value)
+        self._view = ParameterView(self._filter, self)
+        # queued: rows may come and go, which they must not while the view handles a click or closes an editor
+        entered = self._view.parameter_delegate.value_entered
+        entered.connect(self._model.set_value, Qt.ConnectionType.QueuedConnection)
         self._lay_out()
 
     def _lay_out(self) -> None:
@@ -111,7 +110,7 @@ class ParameterEditor(QWidget):
     def _add_preset(self, name: str) -> None:
         is_file = name.endswith(".json")
         self._presets.addItem(Path(name).stem if is_file else name, name)
-        self._presets.setItemData(self._presets.count() - 1, name, 3)  # ToolTipRole
+        self._presets.setItemData(self._presets.count() - 1, name, Qt.ItemDataRole.ToolTipRole)
 
     def set_parameters(self, parameters: Parameters, preset_name: str, preset: Parameters) -> None:
         """Show parameters against a preset, without a signal; refused values are forgotten."""
@@ -120,7 +119,7 @@ class ParameterEditor(QWidget):
         with QSignalBlocker(self._presets):
             self._presets.setCurrentIndex(self._presets.findData(preset_name))
         self._model.load(parameters, preset)
-        self._tell_count()
+        self._refilter()
 
     def set_value(self, name: str, value: object) -> None:
         """Enter a value as if it were typed: it is set and told, or refused in its row."""
@@ -134,12 +133,12 @@ class ParameterEditor(QWidget):
         """Scroll to a parameter and make it the current one, whatever was filtered."""
         self._search.clear()
         self._only_different.setChecked(False)
-        index = self._filter.mapFromSource(self._model.index_of(name, 1))
+        index = self._filter.index_of(name)
         self._view.setCurrentIndex(index)
         self._view.scrollTo(index)
 
     def _pass_on(self, parameters: Parameters) -> None:
-        self._tell_count()
+        self._refilter()
         self.edited.emit(parameters)
 
     def _choose_preset(self, index: int) -> None:
@@ -150,10 +149,17 @@ class ParameterEditor(QWidget):
         self._view.expandAll()
         self._tell_count()
 
+    def _refilter(self) -> None:
+        """Find anew what differs: the proxy alone misses a group whose first row comes to differ."""
+        if self._only_different.isChecked():
+            self._apply_filter()
+        else:
+            self._tell_count()
+
     def _tell_count(self) -> None:
         n = self._model.n_different()
         text = self.tr("{n} differs from preset") if n == 1 else self.tr("{n} differ from preset")
-        self._count.setText(text.format(n=n) if n else self.tr("as the preset"))
+        self._count.setText(text.format(n=n) if n else self.tr("same as preset"))
         is_empty = self._filter.rowCount() == 0
         self._none.setVisible(is_empty)
         if is_empty and self._search.text().strip():

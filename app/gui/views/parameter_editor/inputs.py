@@ -26,27 +26,26 @@ class NumberInput(QDoubleSpinBox):
         self._display = facts.display
         self._is_integer = facts.kind == "integer"
         self.setKeyboardTracking(False)
+        self.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.setDecimals(0 if self._is_integer else 10)
         self.setRange(-_MOST, _MOST)
+        self.setSpecialValueText(facts.display.text(None))  # stands for the least value: automatic
         if self._display.unit:
             self.setSuffix(self._display.unit if self._display.unit == "°" else f" {self._display.unit}")
         self.set_data(facts.value)
         self._before = self.text()
 
     def set_data(self, value: float | None) -> None:
-        """Show a value of the parameter; None: an empty line."""
-        if value is None:
-            self.lineEdit().clear()
-        else:
-            self.setValue(self._display.to_shown(value))
+        """Show a value of the parameter; None: automatic."""
+        self.setValue(self.minimum() if value is None else self._display.to_shown(value))
 
     def data(self) -> tuple[bool, Any]:
         """Return whether something else was entered, and the parameter's new value (None: automatic)."""
         if self.text() == self._before:
             return False, None
-        if not self.cleanText().strip():
-            return True, None
         self.interpretText()
+        if self.value() == self.minimum():
+            return True, None
         return True, int(self.value()) if self._is_integer else self._display.to_data(self.value())
 
     def textFromValue(self, value: float) -> str:
@@ -54,29 +53,36 @@ class NumberInput(QDoubleSpinBox):
         return f"{value:.12g}"
 
     def valueFromText(self, text: str) -> float:
-        """Decimal point or comma."""
-        return float(self._bare(text).replace(",", ".") or 0)
+        """Decimal point or comma; what is no number leaves the value as it is."""
+        try:
+            return float(self._bare(text))
+        except ValueError:
+            return self.value()
 
     def validate(self, text: str, at: int) -> tuple[QValidator.State, str, int]:
         """A number is a number, however large; an empty line is on the way to one."""
-        bare = self._bare(text).replace(",", ".")
+        if text == self.specialValueText():
+            return QValidator.State.Acceptable, text, at
+        bare = self._bare(text)
+        if any(letter not in "+-.0123456789eE" for letter in bare):
+            return QValidator.State.Invalid, text, at
         try:
             float(bare)
         except ValueError:
-            is_begun = all(letter in "+-.0123456789eE" for letter in bare)
-            return (QValidator.State.Intermediate if is_begun else QValidator.State.Invalid), text, at
+            return QValidator.State.Intermediate, text, at
         return QValidator.State.Acceptable, text, at
 
     def _bare(self, text: str) -> str:
-        return text.removesuffix(self.suffix()).removesuffix(self._display.unit).strip()
+        return text.removesuffix(self.suffix()).removesuffix(self._display.unit).strip().replace(",", ".")
 
     def stepBy(self, steps: int) -> None:
         """Step by the digit after the leading one, within the range."""
         facts = self._display.facts
-        value = self.value() + steps * self._step(steps)
-        if facts.low is not None and facts.high is not None:
-            low, high = self._display.to_shown(facts.low), self._display.to_shown(facts.high)
-            value = min(max(value, low), high)
+        if facts.low is None or facts.high is None:
+            return
+        low, high = self._display.to_shown(facts.low), self._display.to_shown(facts.high)
+        value = low if self.value() == self.minimum() else self.value() + steps * self._step(steps)
+        value = min(max(value, low), high)
         self.setValue(float(f"{value:.10g}"))
         self.selectAll()
 

@@ -229,14 +229,20 @@ class ParameterFilter(QSortFilterProxyModel):
         super().__init__(model)
         self._text = ""
         self._only_different = False
+        self._model = model
         self.setRecursiveFilteringEnabled(True)
         self.setSourceModel(model)
 
+    def index_of(self, name: str) -> QModelIndex:
+        """Return the index of a parameter's value; invalid when it is not shown."""
+        return self.mapFromSource(self._model.index_of(name, VALUE_COLUMN))
+
     def set_filter(self, text: str, only_different: bool) -> None:
         """Show what matches."""
+        self.beginFilterChange()
         self._text = text.casefold()
         self._only_different = only_different
-        self.invalidate()
+        self.endFilterChange(QSortFilterProxyModel.Direction.Rows)
 
     def filterAcceptsRow(self, row: int, parent: Index) -> bool:
         """Parameters are judged; a group is shown with the first of its parameters."""

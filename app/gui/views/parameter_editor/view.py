@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QModelIndex, QRectF, Qt
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter, QResizeEvent
 from PySide6.QtWidgets import QHeaderView, QStyleOptionViewItem, QTreeView, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.painting import smaller
 from app.gui.views.parameter_editor.delegate import ParameterDelegate
-from app.gui.views.parameter_editor.model import ROW_ROLE, VALUE_COLUMN, Index, RowFacts
+from app.gui.views.parameter_editor.model import ROW_ROLE, VALUE_COLUMN, Index, ParameterFilter, RowFacts
 from app.gui.views.state_mark import paint_mark
 
 _VALUE_PX = 152
@@ -19,8 +19,9 @@ _INDENT_PX = 12
 class ParameterView(QTreeView):
     """Rows with their refusals written under them; Enter, F2 or Space edit, Delete resets."""
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, model: ParameterFilter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._parameters = model
         self.setObjectName("parameter_view")
         self.setAccessibleName(self.tr("Parameters"))
         self.parameter_delegate = ParameterDelegate(self)
@@ -33,9 +34,13 @@ class ParameterView(QTreeView):
         self.setVerticalScrollMode(QTreeView.ScrollMode.ScrollPerPixel)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setExpandsOnDoubleClick(False)
+        # queued, and by name: the click is done with, and rows may have gone, when the editor opens
         self.parameter_delegate.edit_wanted.connect(self._edit, Qt.ConnectionType.QueuedConnection)
+        self.setModel(model)
+        self.expandAll()
+        self._fit_columns()
 
-    def fit_columns(self) -> None:
+    def _fit_columns(self) -> None:
         """Give the value its width and the name the rest."""
         header = self.header()
         header.setStretchLastSection(False)
@@ -43,8 +48,10 @@ class ParameterView(QTreeView):
         header.setSectionResizeMode(VALUE_COLUMN, QHeaderView.ResizeMode.Fixed)
         header.resizeSection(VALUE_COLUMN, _VALUE_PX)
 
-    def _edit(self, index: QModelIndex) -> None:
-        if index.isValid() and index.flags() & Qt.ItemFlag.ItemIsEditable:
+    def _edit(self, name: str) -> None:
+        index = self._parameters.index_of(name)
+        is_shown = index.isValid() and not self.visualRect(index).isEmpty()
+        if is_shown and self.state() != QTreeView.State.EditingState:
             self.edit(index)
 
     def drawRow(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
@@ -70,6 +77,8 @@ class ParameterView(QTreeView):
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Edit or reset the current row."""
+        if self.state() == QTreeView.State.EditingState:
+            return  # an editor hands on the Return that closes it
         index = self.currentIndex().siblingAtColumn(VALUE_COLUMN)
         facts = index.data(ROW_ROLE)
         if isinstance(facts, RowFacts):

@@ -15,6 +15,8 @@ from core.motion.arm_shape import FLANGE_LINK, Capsule, arm_shape
 from core.motion.kinematics import link_poses
 
 _GHOST_OPACITY = 0.38
+_GHOST_THICKER_M = 0.0015
+"""Where both arms are at one place the ghost lies around the other, instead of flickering in it."""
 
 
 class Arm:
@@ -29,7 +31,8 @@ class Arm:
         capsules = arm_shape(model, tools).capsules
         paint = Paint(("ghost",), opacity=_GHOST_OPACITY) if is_ghost else Paint(("arm",))
         self._links = [link for link in range(FLANGE_LINK + 1) if any(c.link == link for c in capsules)]
-        parts = [_link([c for c in capsules if c.link == link], paint) for link in self._links]
+        thicker_m = _GHOST_THICKER_M if is_ghost else 0.0
+        parts = [_link([c for c in capsules if c.link == link], thicker_m, paint) for link in self._links]
         self.layer = Layer(tuple(parts))
 
     def move(self, joints_rad: npt.ArrayLike) -> None:
@@ -39,8 +42,8 @@ class Arm:
             part.T_layer_part = poses[link]
 
 
-def _link(capsules: Sequence[Capsule], paint: Paint) -> Part:
-    """All capsules of one link as one surface."""
-    vertices, faces = merged([capsule_mesh(c.start_m, c.end_m, c.radius_m) for c in capsules])
+def _link(capsules: Sequence[Capsule], thicker_m: float, paint: Paint) -> Part:
+    """All capsules of one link as one surface, thicker than they are."""
+    vertices, faces = merged([capsule_mesh(c.start_m, c.end_m, c.radius_m + thicker_m) for c in capsules])
     mesh = prepare_mesh(vertices, faces)
     return Part("surface", mesh.vertices_m, paint, mesh.normals, mesh.faces.ravel())

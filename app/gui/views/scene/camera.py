@@ -16,7 +16,7 @@ DIRECTIONS = {"iso": (-60.0, 28.0), "top": (-90.0, 90.0), "front": (-90.0, 0.0),
 
 _FOV_DEG = 36.0
 """Of the view's height; narrow, so that upright things look upright."""
-_MARGIN = 1.06
+_MARGIN = 1.16
 _ROUNDS = 4
 """Near things look larger: what is centred is found by trying."""
 _NEAR, _FAR = 0.02, 60.0

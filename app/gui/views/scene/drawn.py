@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-
 from pyqtgraph import Transform3D
 from pyqtgraph.opengl.GLGraphicsItem import GLGraphicsItem
 

@@ -18,7 +18,7 @@ def mesh_layer(mesh: PreparedMesh, color: str, opacity: float) -> Layer:
         part = Part("surface", mesh.vertices_m, paint, mesh.normals, mesh.faces.ravel())
     else:
         part = Part("lines", mesh.vertices_m, paint, indices=mesh.edges.ravel())
-    return Layer((part,), FaceTarget(mesh.vertices_m, mesh.faces), scale=mesh.scale)
+    return Layer((part,), FaceTarget(mesh.vertices_m, mesh.faces))
 
 
 def line_layer(points_m: npt.ArrayLike, color: str, width_px: float) -> Layer:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
 ByteArray = npt.NDArray[np.uint8]
 
-_FEW = 2000
-"""So many vertices are their own outline; of more it is the box around them."""
+_ENOUGH = 2000
+"""Vertices to tell how large something looks."""
 
 
 @dataclass(frozen=True)
@@ -81,10 +81,10 @@ class Part:
     _outline: tuple[int, FloatArray] | None = None
 
     def outline_m(self) -> FloatArray:
-        """Points (K, 3) of the part's frame within which its vertices lie."""
+        """Vertices (K, 3), so many that the others lie within them but for little; absent ones left out."""
         if self._outline is None or self._outline[0] != self.revision:
             placed = self.vertices_m[np.isfinite(self.vertices_m).all(axis=1)].astype(float)
-            self._outline = self.revision, placed if len(placed) <= _FEW else _box_corners(placed)
+            self._outline = self.revision, _thinned(placed)
         return self._outline[1]
 
     @property
@@ -108,7 +108,6 @@ class Layer:
         parts: what is drawn.
         target: what a click can meet, in the layer's frame; None if a click goes through.
         text: a label's, shown at the first vertex.
-        scale: what its colours stand for.
         T_world_layer: (4, 4) its pose.
         is_visible: whether it is shown.
     """
@@ -116,7 +115,6 @@ class Layer:
     parts: tuple[Part, ...]
     target: Target | None = None
     text: str = ""
-    scale: ColorScale | None = None
     T_world_layer: FloatArray = field(default_factory=lambda: np.eye(4))
     is_visible: bool = True
 
@@ -129,8 +127,9 @@ class Layer:
         return points
 
 
-def _box_corners(points_m: FloatArray) -> FloatArray:
-    """The eight corners (8, 3) of the axis-aligned box around points."""
-    choose = np.indices((2, 2, 2)).reshape(3, -1).T == 1
-    corners: FloatArray = np.where(choose, points_m.max(axis=0), points_m.min(axis=0))
-    return corners
+def _thinned(points_m: FloatArray) -> FloatArray:
+    """Some of many points (N, 3), with those that lie outermost along the axes."""
+    if len(points_m) <= _ENOUGH:
+        return points_m
+    outermost = [*points_m.argmin(axis=0), *points_m.argmax(axis=0)]
+    return np.vstack([points_m[outermost], points_m[:: len(points_m) // _ENOUGH]])

@@ -213,9 +213,10 @@ class Scene3D(QWidget):
         self._canvas.update()
 
     def clear(self) -> None:
-        """Take all layers away; the next ones are brought into view."""
+        """Take all layers and the scale away; the next ones are brought into view."""
         for name in self.layers():
             self.remove(name)
+        self.show_scale(None)
         self._navigator.fit_whatever_comes()
 
     def layers(self) -> tuple[str, ...]:
@@ -246,8 +247,8 @@ class Scene3D(QWidget):
     def fit(self, *names: str) -> None:
         """Bring layers into view, also those still to come; if none is named all that there are.
 
-        They stay in view when the widget changes its size, until the user moves. Without a call all layers are
-        brought into view as they come.
+        They stay in view when the widget changes its size, until the user moves. Without a call all layers
+        are brought into view as they come.
         """
         self._navigator.fit(names)
 

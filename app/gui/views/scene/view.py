@@ -128,10 +128,12 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
     def paintGL(self) -> None:
         """Draw the layers as they are now, then the labels."""
         self._is_following = True
-        for drawn in self._drawn.values():
-            drawn.follow()
-        self._rank()
-        self._is_following = False
+        try:
+            for drawn in self._drawn.values():
+                drawn.follow()
+            self._rank()
+        finally:
+            self._is_following = False
         if self._is_to_be_smooth():
             self._smooth.draw(super().paintGL, self._device_size(), self.defaultFramebufferObject())
         else:

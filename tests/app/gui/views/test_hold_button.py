@@ -4,7 +4,7 @@ import time
 
 import pytest
 from PySide6.QtCore import QPoint, Qt
-from PySide6.QtWidgets import QLineEdit, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QVBoxLayout, QWidget
 
 from app.gui.views.hold_button import HoldButton
 
@@ -98,3 +98,13 @@ def test_a_click_or_an_accessible_press_never_confirms(qtbot, button):
     with qtbot.assertNotEmitted(button.confirmed, wait=400):
         button.click()
         qtbot.mouseClick(button, LEFT)
+
+
+def test_it_is_never_squeezed_below_its_two_lines(qtbot, button):
+    application = QApplication.instance()
+    before = application.styleSheet()
+    application.setStyleSheet("QPushButton { min-height: 18px; }")
+    button.window().resize(200, 40)
+    qtbot.wait(20)
+    assert button.height() >= button.sizeHint().height()
+    application.setStyleSheet(before)

@@ -127,7 +127,7 @@ def box():
 def test_a_dragged_handle_moves_its_side_and_no_other(handle):
     made, camera = box(), Camera(center_m=(0, 0, 0.15), distance_m=1.5, azimuth_deg=-50, elevation_deg=25)
     before = np.concatenate([made.min_m, made.max_m])
-    side, axis = divmod(handle, 3)
+    axis = handle % 3
     goal = np.array([0, 0, 0.15])
     goal[axis] = before[handle] + 0.05
     made.drag(handle, camera.ray(tuple(camera.project(goal[None], SIZE)[0]), SIZE))

@@ -300,6 +300,9 @@ def test_the_scale_is_shown_with_numbers_and_unit(scene):
     assert scene.rect().contains(legend.geometry())
     scene.show_scale(None)
     assert legend.isHidden()
+    scene.show_scale(ColorScale("Height", "mm", 0, 92))
+    scene.clear()
+    assert legend.isHidden()
 
 
 @pytest.mark.parametrize(
