@@ -6,6 +6,7 @@ from functools import partial
 
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QCloseEvent
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
 
@@ -179,6 +180,8 @@ class MainWindow(QMainWindow):
         column.addWidget(self.job_bar)
         whole = QWidget()
         whole.setLayout(column)
+        # Qt makes the native window anew when its first OpenGL widget comes; one that nobody sees comes now.
+        QOpenGLWidget(whole).setGeometry(0, 0, 1, 1)
         self.setCentralWidget(whole)
 
     def _connect(self) -> None:
