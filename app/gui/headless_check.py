@@ -12,7 +12,7 @@ from core.errors import PoursightError
 
 
 def check() -> int:
-    """Click through the program; tell each step and how long the window ever stalled. Returns the exit code."""
+    """Click through the program, tell each step and the window's longest stall; return the exit code."""
     with tempfile.TemporaryDirectory(prefix="poursight-check-") as home:
         # Offscreen, and without a trace in the settings and the sessions of whoever runs it.
         os.environ["QT_QPA_PLATFORM"] = "offscreen"

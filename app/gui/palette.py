@@ -87,7 +87,9 @@ def style_sheet(theme: Theme) -> str:
         padding: 6px 16px;
     }}
     QPushButton[role="next"]:hover {{ background: {t.raised}; }}
-    QLineEdit {{ border: 1px solid {t.muted}; border-radius: 4px; padding: 3px 4px; background: {t.surface}; }}
+    QLineEdit {{
+        border: 1px solid {t.muted}; border-radius: 4px; padding: 3px 4px; background: {t.surface};
+    }}
     QLineEdit:focus {{ border-color: {t.accent}; }}
     QAbstractSpinBox > QLineEdit, QComboBox > QLineEdit {{ border: none; padding: 0; }}
     QCheckBox::indicator {{

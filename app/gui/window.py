@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from pathlib import Path
 
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QCloseEvent
@@ -25,6 +26,8 @@ from app.gui.pages.registry import OTHERS, WORK, make_page, tab_facts
 from app.gui.pages.welcome.page import WelcomePage
 from app.gui.warming import Warming
 from app.jobs.messages import Failed, FailureKind
+from app.library.index import Library
+from app.library.places import sessions_folder
 
 SMALLEST_PX = (1100, 700)
 USUAL_PX = (1280, 800)
@@ -216,6 +219,7 @@ class MainWindow(QMainWindow):
         folder = self.desk.workspace.folder
         if folder is not None:
             self.memory.keep_session(folder)
+            self.desk.background.run("remember", partial(_remember, folder), lambda _: None)
         self.setWindowTitle("Poursight" if folder is None else f"{folder.name} – Poursight")
         self.messages.hide()
         if folder is None:
@@ -272,3 +276,7 @@ class MainWindow(QMainWindow):
             split = page.findChild(SplitView)
             if split is not None and page.isVisibleTo(self):
                 self.memory.keep_split(key, split.sizes())
+
+
+def _remember(folder: Path) -> None:
+    Library((sessions_folder(),)).remember(folder)

@@ -87,7 +87,7 @@ def _unpack(archive: ZipFile, members: Sequence[ZipInfo], top: str, root: Path, 
                 reporter.raise_if_cancelled()
                 unpacked = Path(archive.extract(member, unfinished))
                 _keep_time(unpacked, member)
-                reporter.progress("import", number, len(members))
+                reporter.progress("unpack", number, len(members))
             Session.open(unfinished / top)
             return (unfinished / top).rename(free_folder(root, top))
     finally:

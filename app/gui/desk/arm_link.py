@@ -123,6 +123,8 @@ class ArmLink(QObject):
         self.changed.emit()
 
     def _leave(self, sentence: str) -> None:
+        if self._pressed_s is not None and self._line is None and not sentence:
+            self._answer(StopDone(time.monotonic() - self._pressed_s))  # what is let go stands
         self.connected = self.status = None
         self.farewell = sentence
         self._look.stop()

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from PySide6.QtCore import QObject, QRunnable, QThreadPool, Signal
 
-from core.errors import PoursightError
+from core.errors import PoursightError, StageError
 
 R = TypeVar("R")
 
@@ -29,11 +29,18 @@ class _Call(QObject, QRunnable):
             result, error = self._function(), None
         except PoursightError as reason:
             result, error = None, reason
+        except Exception as fault:  # of the program: told like everything else, so that nobody waits for ever
+            result, error = None, StageError(f"A fault of the program ({type(fault).__name__}: {fault}).")
         self.ended.emit(result, error)
 
 
 class Background(QObject):
-    """Runs calls one by one in a thread; only the newest of each name is told, so a page never goes back."""
+    """Runs calls one by one in a thread; only the newest of each name is told, so a page never goes back.
+
+    Signals: `told` with the sentence of a call that failed and had nobody to hear of it.
+    """
+
+    told = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -59,7 +66,7 @@ class Background(QObject):
             name: a newer call of the same name replaces an older one, whose result is dropped.
             function: must not touch widgets.
             done: told the result.
-            failed: told what could be explained; without it the failure is dropped.
+            failed: told what went wrong; without it `told` says it to the user.
         """
         call = _Call(function)
         self._newest[name] = call
@@ -72,6 +79,8 @@ class Background(QObject):
                 done(result)
             elif failed is not None:
                 failed(error)
+            else:
+                self.told.emit(str(error))
 
         call.ended.connect(end)
         self._pool.start(call)

@@ -52,6 +52,7 @@ class Desk(QObject):
         self.jobs.finished.connect(lambda *_: self.workspace.refresh())
         self.jobs.failed.connect(lambda *_: self.workspace.refresh())
         self.cell.failed.connect(self.told)
+        self.background.told.connect(self.told)
 
     def new_session(self, name: str) -> bool:
         """Open a new session in the usual place, called after today and `name`; False if that cannot be."""

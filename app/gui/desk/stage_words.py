@@ -19,6 +19,9 @@ def stage_words(stage: str) -> str:
         "motion": translate("Stage", "Checking the arm's motions"),
         "evidence": translate("Stage", "Rendering pictures"),
         "pour": translate("Stage", "Pouring"),
+        "difference": translate("Stage", "Comparing the surfaces"),
+        "export": translate("Stage", "Writing the file"),
+        "unpack": translate("Stage", "Unpacking the session"),
         "outcome": translate("Stage", "Counting candies"),
     }
     return words.get(stage, stage.capitalize())
