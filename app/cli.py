@@ -169,6 +169,31 @@ def pour(
 
 
 @app.command()
+def choose(
+    session: SessionArgument,
+    i: Annotated[
+        Optional[int],  # noqa: UP045
+        typer.Argument(metavar="I", min=0, help="Direction, from 0."),
+    ] = None,
+    j: Annotated[
+        Optional[int],  # noqa: UP045
+        typer.Argument(metavar="J", min=0, help="Distance, from 0."),
+    ] = None,
+    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Why this one.")] = "",
+    is_withdrawn: Annotated[bool, typer.Option("--withdraw", help="Let the program choose again.")] = False,
+) -> None:
+    """Choose another pour than the program's, with a reason that is kept."""
+    from app import choosing
+
+    if is_withdrawn:
+        choosing.withdraw(session)
+    elif i is None or j is None:
+        raise typer.BadParameter("give I and J, or --withdraw")
+    else:
+        choosing.choose(session, i, j, reason)
+
+
+@app.command()
 def outcome(
     session: SessionArgument,
     spilled: Annotated[

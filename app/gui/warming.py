@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from importlib import import_module
+
 from PySide6.QtCore import QObject, QThread, Signal
 from typing_extensions import override
 
 from app.gui.pages.registry import OTHERS, WORK, import_page
+
+_OPENGL = "app.gui.views.scene.view"
+"""Where pyqtgraph and PyOpenGL come in; the scene itself imports it when the first one is made."""
 
 
 class _Importing(QThread):
@@ -13,6 +18,7 @@ class _Importing(QThread):
 
     @override
     def run(self) -> None:
+        import_module(_OPENGL)
         for key in (*WORK, *OTHERS):
             import_page(key)
 

@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from app.jobs.messages import Status
+
 if TYPE_CHECKING:
     from core.geometry import FloatArray
     from core.motion.pour.plan import PlannedMove, PourPlan
@@ -30,7 +32,7 @@ class ArmConnected:
 
 
 @dataclass(frozen=True)
-class ArmStatus:
+class ArmStatus(Status):
     """How an arm is, about ten times a second while it is connected.
 
     Attributes:
@@ -67,7 +69,7 @@ class StopDone:
 
 
 @dataclass(frozen=True)
-class MoveProgress:
+class MoveProgress(Status):
     """How far the arm is with what it was let do.
 
     Attributes:

@@ -89,9 +89,14 @@ class HeldArm:
         while not self._is_over.wait(_EVERY_S_MOVING if self.is_at_work else _EVERY_S):
             try:
                 self._tell(self._status())
-            except RobotLost as error:
-                self._tell(ArmGone(f"{error} Then connect again."))
+            except RobotLost:
                 self._is_over.set()
+                self._tell(
+                    ArmGone(
+                        f"The link to the {self.arm.robot.name} was lost, so what it does is not known; look "
+                        "at the arm and at the network cable, then connect again."
+                    )
+                )
 
     def _status(self) -> ArmStatus:
         """How it is now.

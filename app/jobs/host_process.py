@@ -80,11 +80,13 @@ class _Host:
             self._connection.send(message)
 
     def _end(self) -> None:
-        """Let the running job stop, close the service, and be gone in any case."""
+        """Let the running job stop, close the service, and be gone in any case.
+
+        Returning lets Python clean up what it shares with the workers; it does not wait for the job's thread.
+        """
         threading.Thread(target=_leave_soon, daemon=True).start()
         self._face.cancel()
         self._service.close()
-        os._exit(0)
 
 
 def _leave_soon() -> None:

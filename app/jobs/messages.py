@@ -57,6 +57,10 @@ class News:
     payload: Any
 
 
+class Status:
+    """Marks news that tell how something is now: of several that wait, only the newest is handed on."""
+
+
 @dataclass(frozen=True)
 class Finished:
     """The job is done."""

@@ -65,12 +65,30 @@ def imagine(
         return Imagination(containability, grid, choice, dropped - started, perf_counter() - dropped)
 
 
+def imagine_containability(model: CollisionModel, parameters: Parameters) -> Containability:
+    """Imagine open containability alone, in this process, which should be a worker.
+
+    Raises:
+        StageError: the object is smaller than a candy.
+    """
+    with body_files(object=(model.parts, not model.is_convex)) as files:
+        target = object_at_rest(model, files["object"], parameters)
+        _check_drop(target, parameters)
+        task = drop_task(target, parameters)
+        found: Containability = task.function(*task.arguments)
+        return found
+
+
 def _check(target: ObjectAtRest, parameters: Parameters) -> None:
     """Find out what cannot be imagined before a worker starts, and always in the same order."""
+    _check_drop(target, parameters)
+    pack_cup(parameters, 0)
+
+
+def _check_drop(target: ObjectAtRest, parameters: Parameters) -> None:
     settings = parameters.containability
     extents = target.aabb_m[1] - target.aabb_m[0]
     grid_counts(extents, pitch_m(parameters.particle, settings), settings.n_max, settings.n_min)
-    pack_cup(parameters, 0)
 
 
 def object_at_rest(model: CollisionModel, body: BodyFile, parameters: Parameters) -> ObjectAtRest:

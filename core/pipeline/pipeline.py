@@ -245,8 +245,8 @@ class Pipeline:
 
         return self._fresh("motion", ("containability", "pouring"), described, PourMotions.load, run)
 
-    def evidence(self) -> Evidence:
-        """Render stills and films of what was imagined."""
+    def evidence(self, early: Path | None = None) -> Evidence:
+        """Render stills and films of what was imagined; `early` takes each still as soon as it is drawn."""
         imagination = self.imagination()
 
         def run() -> Evidence:
@@ -259,6 +259,7 @@ class Pipeline:
                 imagination.choice,
                 self.pool,
                 self.reporter,
+                early,
             )
 
         return self._stage("evidence", Evidence.load, run)

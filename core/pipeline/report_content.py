@@ -14,6 +14,7 @@ from core.quality import ScanQuality
 from core.reconstruction import Reconstruction
 from core.report import Media, ReportContent
 from core.session import Session
+from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import pour_runs
 
 _THUMBNAIL_PX = (240, 180)
@@ -78,6 +79,7 @@ def gather(
         warnings=tuple(warnings),
         motions=motions,
         runs=tuple(pour_runs(session.path)),
+        operator=read_operator_choice(session.path, made["pouring"].digest),
     )
 
 

@@ -11,6 +11,7 @@ from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
 from core.motion.pour.choosing import PourMotions
 from core.parameters import Parameters
+from core.session.operator_choice import OperatorChoice
 from core.session.pour_runs import PourRun
 
 if TYPE_CHECKING:  # only its numbers are needed here, not the fusion
@@ -45,6 +46,7 @@ class ReportContent:
         warnings: sentences the stages gave.
         motions: which pours an arm can make; None when that was not asked.
         runs: the pours that an arm made, or began.
+        operator: what a person chose instead of the program; None when nobody did.
     """
 
     name: str
@@ -66,3 +68,4 @@ class ReportContent:
     warnings: tuple[str, ...] = ()
     motions: PourMotions | None = None
     runs: tuple[PourRun, ...] = ()
+    operator: OperatorChoice | None = None

@@ -9,6 +9,7 @@ from datetime import datetime
 from core.imagination.results import PourChoice, PourGrid
 from core.motion.pour.choosing import PourMotions
 from core.report.sentences import direction_text
+from core.session.operator_choice import OperatorChoice
 from core.session.pour_runs import PourRun
 
 MM = 1000.0
@@ -33,9 +34,29 @@ def motion_sentence(motions: PourMotions, grid: PourGrid) -> str:
     if not motions.is_changed:
         return f"{said}, the chosen one among them."
     return (
-        f"{said}. The best by imagination alone, from {_place(grid, paper)}, is not one of them: "
-        f"{motions.at(paper.i, paper.j).reason} So it pours from {_place(grid, choice)}."
+        f"{said}. The best by imagination alone, from {place_text(grid, paper.i, paper.j)}, is not one of "
+        f"them: {motions.at(paper.i, paper.j).reason} "
+        f"So it pours from {place_text(grid, choice.i, choice.j)}."
     )
+
+
+def operator_sentence(operator: OperatorChoice, grid: PourGrid, program: PourChoice | None) -> str:
+    """Say what a person chose and why, and what the program would choose."""
+    place = place_text(grid, operator.i, operator.j)
+    reason = operator.reason.rstrip(".")
+    if program is None:
+        return f"Chosen by the operator, from {place}: {reason} (the program would choose none)."
+    if (program.i, program.j) == (operator.i, operator.j):
+        return f"Chosen by the operator, from {place}: {reason} (the program would choose the same)."
+    return (
+        f"Chosen by the operator, from {place}: {reason} "
+        f"(the program would choose {place_text(grid, program.i, program.j)})."
+    )
+
+
+def place_text(grid: PourGrid, i: int, j: int) -> str:
+    """Return where a pour's pivot lies, such as '45° at 31 mm'."""
+    return f"{direction_text(float(grid.theta_rad[i]))} at {grid.indent_m[j] * MM:.0f} mm"
 
 
 def motion_rows(motions: PourMotions, grid: PourGrid) -> list[MotionRow]:
@@ -57,24 +78,24 @@ def motion_reasons(motions: PourMotions, grid: PourGrid) -> list[tuple[str, str]
     places: dict[str, list[str]] = {}
     for pour in motions.pours:
         if not pour.is_feasible:
-            place = f"{direction_text(float(grid.theta_rad[pour.i]))} at {grid.indent_m[pour.j] * MM:.0f} mm"
-            places.setdefault(pour.reason, []).append(place)
+            places.setdefault(pour.reason, []).append(place_text(grid, pour.i, pour.j))
     return [(", ".join(where), reason) for reason, where in places.items()]
 
 
 def run_rows(runs: Sequence[PourRun]) -> list[tuple[str, str, str]]:
-    """Return (time, how it ended, what was spilled) of each run."""
+    """Return (time, how it ended and whether a person had chosen it, what was spilled) of each run."""
     return [
-        (_clock(run.begun), run.sentence, "" if run.is_back_off else _outcome_sentence(run)) for run in runs
+        (
+            _clock(run.begun),
+            f"{run.sentence} {run.note}".rstrip(),
+            "" if run.is_back_off else _outcome_sentence(run),
+        )
+        for run in runs
     ]
 
 
 def _outcome_sentence(run: PourRun) -> str:
     return run.outcome.sentence if run.outcome else "Not entered yet."
-
-
-def _place(grid: PourGrid, choice: PourChoice) -> str:
-    return f"{direction_text(choice.theta_rad)} at {grid.indent_m[choice.j] * MM:.0f} mm"
 
 
 def _clock(time: str) -> str:

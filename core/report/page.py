@@ -10,7 +10,7 @@ from core.imagination.results import Containability
 from core.report.content import ReportContent
 from core.report.footprint import footprint_plot
 from core.report.media import data_uri, embed_films, embed_pictures
-from core.report.motions import motion_reasons, motion_rows, motion_sentence, run_rows
+from core.report.motions import motion_reasons, motion_rows, motion_sentence, operator_sentence, run_rows
 from core.report.pour_map import pour_map
 from core.report.sentences import has_spread, omega_texts, pours_sentence, verdict_sentence
 from core.report.tables import (
@@ -75,6 +75,7 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         "parameter_rows": parameter_rows(content.parameters, content.preset),
         "time_rows": time_rows(dict(content.seconds)),
         "total_s": f"{sum(content.seconds.values()):.1f}",
+        "operator_said": _operator_said(content),
         **_omega_data(found),
         **_pour_data(content),
         **_motion_data(content),
@@ -103,6 +104,13 @@ def _pour_data(content: ReportContent) -> dict[str, Any]:
         "indents": [f"{indent_m * MM:.0f}" for indent_m in grid.indent_m],
         "spread_said": f"; ± over {grid.n_in.shape[2]} packings of the cup" if has_spread(grid) else "",
     }
+
+
+def _operator_said(content: ReportContent) -> str:
+    if content.operator is None or content.pours is None:
+        return ""
+    program = content.motions.choice if content.motions is not None else content.choice
+    return operator_sentence(content.operator, content.pours, program)
 
 
 def _motion_data(content: ReportContent) -> dict[str, Any]:

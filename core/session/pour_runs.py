@@ -84,6 +84,11 @@ class PourRun:
         return str(self.events[0].get("imagination", "")) if self.events else ""
 
     @property
+    def note(self) -> str:
+        """Why it was this pour, if a person had chosen it; else empty."""
+        return str(self.events[0].get("note", "")) if self.events else ""
+
+    @property
     def is_back_off(self) -> bool:
         """Whether it was no pour but the way back after one that was stopped."""
         return bool(self.events and self.events[0].get("is_back_off", False))

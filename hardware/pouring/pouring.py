@@ -47,6 +47,7 @@ class PourTarget:
         pivot_m: (3,) r_pivot.
         pouring: what was imagined with: the cup and the turn.
         digest: of the imagination it belongs to.
+        note: why it is this one, if a person chose it; goes into the run's log.
     """
 
     object_aabb_m: FloatArray
@@ -56,6 +57,7 @@ class PourTarget:
     pivot_m: FloatArray
     pouring: PouringParameters
     digest: str
+    note: str = ""
 
     def plan(self, cell: PourCell, start_rad: FloatArray) -> PourPlan:
         """Plan it from joints (6,).
@@ -137,6 +139,7 @@ class Pouring:
                 f"Pour {plan.i}, {plan.j} was confirmed: {plan.duration_s:.0f} s.",
                 plan=plan.digest,
                 imagination=fresh.target.digest,
+                note=fresh.target.note,
             )
             self.last_run = folder
             self._make(plan, plan.moves, log)

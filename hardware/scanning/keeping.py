@@ -122,6 +122,18 @@ def read_views(folder: Path) -> list[ViewRecord]:
     return _records(read_json(folder / VIEWS_FILE))
 
 
+def read_origin(folder: Path) -> dict[str, Any]:
+    """Return which scan the views in a folder belong to, as `ScanKeeper` was told; empty if nothing says so.
+
+    Raises:
+        SessionError: the file is damaged.
+    """
+    if not (folder / VIEWS_FILE).exists():
+        return {}
+    origin = read_json(folder / VIEWS_FILE).get("origin")
+    return origin if isinstance(origin, dict) else {}
+
+
 def _outcome(record: ViewRecord) -> dict[str, Any]:
     return {"state": record.state.value, "problems": list(record.problems)}
 

@@ -32,8 +32,11 @@ RECONNECT_WAIT_S = 0.5
 FEWEST_VIEWS = 3
 _POLL_S = 0.02
 
-ViewTaken = Callable[[ViewRecord, RgbdFrame, TsdfVolume], None]
-"""Told after each view: what became of it, its images, and everything fused so far (`.mesh()` to look at)."""
+ViewTaken = Callable[[ViewRecord, RgbdFrame | None, TsdfVolume], None]
+"""Told after each view: what became of it, its images (none if it failed), and everything fused so far
+(`.mesh()` to look at)."""
+ViewsPlanned = Callable[[Sequence[ViewRecord], TsdfVolume], None]
+"""Told before views are taken: what became of each so far, and everything fused so far."""
 
 
 class ScanProcedure:
@@ -51,6 +54,7 @@ class ScanProcedure:
         reporter: Reporter,
         control: ScanControl | None = None,
         taken: ViewTaken | None = None,
+        planned: ViewsPlanned | None = None,
     ) -> None:
         """Begin, or continue what the keeper's folder holds; without a keeper nothing goes to the disk.
 
@@ -65,6 +69,7 @@ class ScanProcedure:
         self._reporter = reporter
         self._control = control or ScanControl()
         self._taken = taken
+        self._planned = planned
         self._frames: dict[str, RgbdFrame] = {}
         self._intrinsics: Intrinsics | None = None
         self._last: RgbdFrame | None = None
@@ -161,6 +166,8 @@ class ScanProcedure:
     def _plan(self, views: Sequence[PlannedView]) -> None:
         known = {record.view.name for record in self.records}
         self.records += [ViewRecord(view) for view in views if view.name not in known]
+        if self._planned is not None:
+            self._planned(tuple(self.records), self.volume)
 
     def _take_one(self, view: PlannedView) -> ViewRecord:
         """Move there and shoot, with a bound on the tries."""
@@ -294,8 +301,9 @@ class ScanProcedure:
             kind = "left out" if not outcome.has_image else "poor"
             self._reporter.warn(f"View {outcome.view.name} is {kind}: {problem}")
         self._reporter.progress(STAGE, self._n_taken, len(self.records))
-        if outcome.has_image and self._taken is not None:
-            self._taken(outcome, self._frames[outcome.view.name], self.volume)
+        if self._taken is not None:
+            frame = self._frames[outcome.view.name] if outcome.has_image else None
+            self._taken(outcome, frame, self.volume)
 
     def _note(self) -> None:
         if self._keeper is not None:

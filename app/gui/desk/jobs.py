@@ -8,8 +8,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, TypeVar
 
-from PySide6.QtCore import QObject, Qt, QTimer, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
+from app.gui.desk.inbox import Inbox
 from app.jobs.host import Host
 from app.jobs.messages import Failed, FailureKind, Finished, Message, News, Progressed, Warned
 from app.jobs.service import Service
@@ -73,7 +74,6 @@ class Jobs(QObject):
     failed = Signal(object, object)
     warned = Signal(str)
     news = Signal(object)
-    _heard = Signal(object, object)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -81,7 +81,7 @@ class Jobs(QObject):
         self._hosts: list[Host[Any]] = []
         self._once_only: set[Host[Any]] = set()
         self._then: Callable[[Any], None] | None = None
-        self._heard.connect(self._hear, Qt.ConnectionType.QueuedConnection)
+        self._inbox = Inbox(self._hear, self)
         self._tick = QTimer(self, interval=_TICK_MS)
         self._tick.timeout.connect(self._tell_progress)
         self._enforce = QTimer(self, singleShot=True)
@@ -96,7 +96,7 @@ class Jobs(QObject):
             is_repeatable: whether a failed job of it may simply be begun again; not where things move.
         """
         hosts: list[Host[S]] = []
-        host: Host[S] = Host(kind, name, lambda message: self._heard.emit(hosts[0], message))
+        host: Host[S] = Host(kind, name, lambda message: self._inbox.put(hosts[0], message))
         hosts.append(host)
         self._hosts.append(host)
         if not is_repeatable:

@@ -73,6 +73,7 @@ class Chip(QWidget):
             left += _MARK_PX + GRID_PX // 2
         where = Qt.AlignmentFlag.AlignCenter if self._is_filled else Qt.AlignmentFlag.AlignVCenter
         painter.drawText(area.adjusted(left, 0, 0, 0), where, self._text)
+        painter.end()
 
     @override
     def changeEvent(self, event: QEvent) -> None:

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QProgressBar, QPushButton
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton
 
 from app.gui.desk.jobs import Jobs, RunningJob
 from app.gui.desk.stage_words import stage_words
 from app.gui.frame.next_step import NextStep
 from app.gui.theme import GRID_PX
-
-_STEPS = 1000
+from app.gui.views.progress_line import ProgressLine
 
 
 class JobBar(QFrame):
@@ -27,10 +26,8 @@ class JobBar(QFrame):
         self._text.setObjectName("job_text")
         self._left = QLabel()
         self._left.setProperty("role", "muted")
-        self._bar = QProgressBar()
+        self._bar = ProgressLine()
         self._bar.setObjectName("job_progress")
-        self._bar.setRange(0, _STEPS)
-        self._bar.setTextVisible(False)
         self._bar.setFixedSize(28 * GRID_PX, GRID_PX)
         self._cancel = QPushButton(self.tr("Cancel"))
         self._cancel.setObjectName("cancel")
@@ -81,8 +78,7 @@ class JobBar(QFrame):
             doing = self.tr("stopping")
         self._text.setText(f"{job.title}: {doing}")
         self._bar.show()
-        self._bar.setRange(0, _STEPS if job.stage else 0)  # until it tells how far it is, it moves to and fro
-        self._bar.setValue(round(_STEPS * job.fraction))
+        self._bar.set_fraction(job.fraction if job.stage else None)
         self._left.setText(self._time_left(job))
         self._next.hide()
         self._cancel.setVisible(True)

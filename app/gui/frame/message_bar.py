@@ -119,3 +119,4 @@ class _Mark(QWidget):
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
         paint_mark(painter, self.rect().toRectF(), self._state, theme_of(self))
+        painter.end()

@@ -57,9 +57,12 @@ class Tab(QAbstractButton):
 
     @override
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = theme_of(self)
         painter = QPainter(self)
-        area = self.rect()
+        self._paint(painter)
+        painter.end()
+
+    def _paint(self, painter: QPainter) -> None:
+        theme, area = theme_of(self), self.rect()
         if self.isChecked():
             painter.fillRect(area, theme.color("surface"))
             painter.fillRect(QRect(0, 0, 4, area.height()), theme.color("accent"))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication, QStandardPaths, Qt, Signal
+from PySide6.QtCore import QStandardPaths, Qt, Signal
 from PySide6.QtWidgets import QFileDialog, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from app.gui.desk.desk import Desk
+from app.gui.desk.workspace import Workspace
 from app.gui.pages.saved_presets import preset_names, save_preset
 from app.gui.theme import GRID_PX
 from app.gui.views.parameter_editor import ParameterEditor
@@ -19,15 +20,11 @@ _FOLDED_EDITOR_PX = 46 * GRID_PX
 
 
 class ParametersPart(QWidget):
-    """The editor of some groups, with "Save as preset".
-
-    Signals: `counted` with how many of its parameters differ from the preset.
+    """The editor of some groups, with "Save as preset"; it takes its time: make it when it is to be seen.
 
     Attributes:
         editor: shows the workspace's parameters.
     """
-
-    counted = Signal(int)
 
     def __init__(self, desk: Desk, groups: Sequence[str]) -> None:
         super().__init__()
@@ -88,7 +85,6 @@ class ParametersPart(QWidget):
     def _show(self) -> None:
         workspace = self._workspace
         self.editor.set_parameters(workspace.parameters, workspace.preset_name, workspace.preset)
-        self.counted.emit(self.editor.n_different)
 
 
 class FoldedParameters(QWidget):
@@ -108,20 +104,36 @@ class FoldedParameters(QWidget):
         self._header.setAutoRaise(True)
         self._header.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self._header.setToolTip(self.tr("Show or hide the parameters of this page"))
-        self.part = ParametersPart(desk, groups)
-        self.part.setMinimumHeight(_FOLDED_EDITOR_PX)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(GRID_PX // 2)
-        column.addWidget(self._header)
-        column.addWidget(self.part, 1)
-        self.part.counted.connect(self._count)
+        self._header.setArrowType(Qt.ArrowType.RightArrow)
         self._header.toggled.connect(self._fold)
-        self._count(self.part.editor.n_different)
-        self._fold(False)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(GRID_PX // 2)
+        self._column.addWidget(self._header)
+        self._desk, self._groups = desk, tuple(groups)
+        self._part: ParametersPart | None = None
+        desk.workspace.parameters_changed.connect(self._count)
+        self._count()
 
-    def _count(self, n: int) -> None:
-        self._header.setText(different_text(n))
+    @property
+    def part(self) -> ParametersPart:
+        """What is folded away; made when it is first wanted."""
+        if self._part is None:
+            self._part = ParametersPart(self._desk, self._groups)
+            self._part.setMinimumHeight(_FOLDED_EDITOR_PX)
+            self._part.setVisible(self._header.isChecked())
+            self._column.addWidget(self._part, 1)
+        return self._part
+
+    def _count(self) -> None:
+        n = n_different(self._desk.workspace, self._groups)
+        if n == 0:
+            text = self.tr("Parameters — as the preset")
+        elif n == 1:
+            text = self.tr("Parameters — 1 differs from preset")
+        else:
+            text = self.tr("Parameters — {n} differ from preset")
+        self._header.setText(text.format(n=n))
 
     def _fold(self, is_open: bool) -> None:
         self._header.setArrowType(Qt.ArrowType.DownArrow if is_open else Qt.ArrowType.RightArrow)
@@ -130,11 +142,7 @@ class FoldedParameters(QWidget):
             self.opened.emit()
 
 
-def different_text(n: int) -> str:
-    """Return the heading of parameters of which `n` differ from their preset."""
-    tr = QCoreApplication.translate
-    if n == 0:
-        return tr("ParametersPart", "Parameters — as the preset")
-    if n == 1:
-        return tr("ParametersPart", "Parameters — 1 differs from preset")
-    return tr("ParametersPart", "Parameters — {n} differ from preset").format(n=n)
+def n_different(workspace: Workspace, groups: Sequence[str]) -> int:
+    """Return how many parameters of some groups differ from the preset they started from."""
+    names = difference(workspace.parameters, workspace.preset)
+    return sum(name.split(".")[0] in groups for name in names)

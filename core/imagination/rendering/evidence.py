@@ -44,3 +44,11 @@ class Evidence:
                 f"{error.filename} cannot be read; run the stage that writes it again."
             ) from error
         return cls(files, table["renderer"])
+
+
+def show_early(folder: Path | None, name: str, content: bytes) -> None:
+    """Put a picture where somebody waits for it before the others are done, whole or not at all."""
+    if folder is not None:
+        unfinished = folder / f".{name}.part"
+        unfinished.write_bytes(content)
+        unfinished.replace(folder / name)

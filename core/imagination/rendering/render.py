@@ -31,10 +31,12 @@ def render_evidence(
     choice: PourChoice | None,
     pool: WorkerPool,
     reporter: Reporter,
+    early: Path | None = None,
 ) -> Evidence:
     """Render what `parameters.evidence` asks for, with EGL or, where that fails, with TinyRenderer.
 
-    `surface` is the object at rest in the frame of the recordings, `cup` the cup in its own frame.
+    `surface` is the object at rest in the frame of the recordings, `cup` the cup in its own frame. The folder
+    `early` takes each still as soon as it is drawn, for somebody who watches; it is the caller's to clear.
 
     Raises:
         Cancelled: the reporter was asked to stop.
@@ -43,7 +45,7 @@ def render_evidence(
     """
 
     def render(folder: Path, with_egl: bool) -> Evidence:
-        tasks = _tasks(folder, surface, cup, parameters, containability, grid, choice, with_egl)
+        tasks = _tasks(folder, surface, cup, parameters, containability, grid, choice, with_egl, early)
         parts: list[Evidence] = pool.run(tasks, STAGE, reporter)
         files = {name: content for part in parts for name, content in part.files.items()}
         return Evidence(files, parts[0].renderer if parts else "")
@@ -67,19 +69,23 @@ def _tasks(
     grid: PourGrid | None,
     choice: PourChoice | None,
     with_egl: bool,
+    early: Path | None,
 ) -> list[Task]:
-    """Longest first, so that two workers end at about the same time; weights are seconds, roughly."""
+    """The longest first, so that two workers end at about the same time; weights are seconds, roughly.
+
+    The stills, which take least, come second: somebody may be waiting for them.
+    """
     aabb_m, wanted = containability.aabb_m, parameters.evidence
     drop = (folder, surface, containability, parameters, PICTURE_PX, with_egl)
     tasks = []
     if wanted.films:
         tasks.append(Task(render_drop_film, drop, 8.0))
+    if wanted.renders:
+        tasks.append(Task(render_drop_stills, (*drop, early), 1.0))
     if wanted.films and grid is not None and choice is not None:
         pour = (folder, surface, aabb_m, cup, grid, choice, parameters, PICTURE_PX, with_egl)
         tasks.append(Task(render_pour_film, pour, 4.0))
     if wanted.renders and grid is not None:
         sheet = (folder, surface, aabb_m, cup, grid, choice, parameters, with_egl)
         tasks.append(Task(render_pour_sheet, sheet, 2.0))
-    if wanted.renders:
-        tasks.append(Task(render_drop_stills, drop, 1.0))
     return tasks

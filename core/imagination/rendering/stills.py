@@ -8,7 +8,7 @@ import numpy as np
 
 from core.imagination.recording import Recording
 from core.imagination.rendering.drop_view import open_drop, phase
-from core.imagination.rendering.evidence import Evidence
+from core.imagination.rendering.evidence import Evidence, show_early
 from core.imagination.rendering.labels import BAR_PX, to_png, with_caption
 from core.imagination.rendering.scene import Picture
 from core.imagination.results import Containability
@@ -26,10 +26,11 @@ def render_drop_stills(
     parameters: Parameters,
     size_px: tuple[int, int],
     with_egl: bool,
+    early: Path | None = None,
 ) -> Evidence:
     """Return PNGs (width, height `size_px`) named `drop_1_start.png` to `drop_6_end.png`.
 
-    Call it in a worker; `folder` takes temporary files.
+    Call it in a worker; `folder` takes temporary files, `early` each picture as soon as it is drawn.
     """
     width, height = size_px[0], size_px[1] - BAR_PX
     moments = still_moments(containability.recording, parameters)
@@ -40,7 +41,9 @@ def render_drop_stills(
             large = view.shoot(moment, _SUPERSAMPLING * width, _SUPERSAMPLING * height)
             time_s = float(containability.recording.time_s[moment])
             caption = f"{time_s:.2f} s   {_words(name, time_s, containability, parameters)}"
-            files[f"drop_{index + 1}_{name}.png"] = to_png(with_caption(reduced(large), caption))
+            file = f"drop_{index + 1}_{name}.png"
+            files[file] = to_png(with_caption(reduced(large), caption))
+            show_early(early, file, files[file])
         return Evidence(files, view.scene.renderer)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+from app import commands
 from app.jobs.session_work import SessionTask, working_on
 from app.pouring import prepare
 from app.scanning import scan_object
@@ -41,3 +42,9 @@ def make_session(folder: Path, name: str) -> Path:
 def copied(made: Path, folder: Path) -> Path:
     """Return a copy that a test may change."""
     return Path(shutil.copytree(made, folder))
+
+
+def make_poured_session(folder: Path, name: str) -> Path:
+    """Scan, imagine, pour in the simulated cell, and render the evidence, all with the defaults."""
+    commands.demo(name, folder, commands.Choices(None, [], None), None)
+    return folder

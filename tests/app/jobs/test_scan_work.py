@@ -13,7 +13,7 @@ import pytest
 from app.jobs.arm_news import ArmConnected, ArmGone, ArmStatus
 from app.jobs.host import Host
 from app.jobs.messages import Failed, FailureKind, Finished, News, Progressed, Warned
-from app.jobs.scan_news import MeshGrown, ViewDone, ViewsPlanned
+from app.jobs.scan_news import MeshGrown, Proposal, ViewDone, ViewsPlanned
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionTask, working_on
 from app.scanning import IN_PROGRESS, ScanWishes, scan_object
@@ -24,17 +24,22 @@ from core.workers import WorkerPool
 from hardware.cell import read_cell
 from hardware.scanning.keeping import read_views
 
-N_VIEWS = 6
+N_VIEWS = 5
+NO_WISHES = ScanWishes()
 
 
 @pytest.fixture(scope="module")
 def cell():
-    """The simulated cell with a quarter of its views."""
-    return few_views(read_cell())
+    """The simulated cell with its first views only: they lie near each other."""
+    return with_views(read_cell(), slice(N_VIEWS))
 
 
-def few_views(settings):
-    scan = settings.scan.model_copy(update={"views_rad": settings.scan.views_rad[:: 24 // N_VIEWS]})
+def with_views(settings, which):
+    return with_joints(settings, settings.scan.views_rad[which])
+
+
+def with_joints(settings, views_rad):
+    scan = settings.scan.model_copy(update={"views_rad": tuple(views_rad)})
     return settings.model_copy(update={"scan": scan})
 
 
@@ -63,7 +68,7 @@ class Scanning:
         self.host, self.heard, self.cell, self.task = host, heard, cell, task
         self.told = []
 
-    def start(self, wishes=ScanWishes(), source="bowl"):
+    def start(self, wishes=NO_WISHES, source="bowl"):
         self.host.order(ScanWork.get_ready)
         self.host.start(ScanWork.scan, self.task, self.cell, source, wishes)
 
@@ -86,6 +91,10 @@ class Scanning:
     def until_views(self, n):
         while len(self.views()) < n:
             self.until(lambda thing: isinstance(thing, ViewDone))
+
+
+def is_moving(thing):
+    return isinstance(thing, ArmStatus) and np.abs(thing.state.joint_speeds_rad_s).max() > 0
 
 
 def kinds(told):
@@ -145,7 +154,7 @@ def test_a_paused_scan_holds_and_goes_on(scanning):
         scanning.until(lambda thing: isinstance(thing, ViewDone) and time.monotonic() > pause_s + 1.2, 1.8)
     n_held = len(scanning.views())
     assert n_held <= 2
-    assert not any(np.abs(thing.state.joint_speeds_rad_s).max() for thing in scanning.told[-3:])
+    assert not any(is_moving(thing) for thing in scanning.told[-3:])
     scanning.host.order(ScanWork.resume)
     assert isinstance(scanning.end(), Finished)
     assert len(scanning.views()) == N_VIEWS
@@ -181,13 +190,14 @@ def taken(scanning):
 
 def test_stop_halts_the_arm_and_nothing_goes_on(scanning):
     scanning.start()
-    scanning.until(lambda thing: isinstance(thing, ArmStatus) and np.abs(thing.state.joint_speeds_rad_s).max())
+    scanning.until(
+        lambda thing: isinstance(thing, ArmStatus) and np.abs(thing.state.joint_speeds_rad_s).max()
+    )
     began_s = time.monotonic()
     scanning.host.order(ScanWork.stop)
     assert scanning.end().kind is FailureKind.CANCELLED
     assert time.monotonic() - began_s < 1
-    states = [thing.state for thing in scanning.told if isinstance(thing, ArmStatus)]
-    assert not np.abs(states[-1].joint_speeds_rad_s).max()
+    assert not is_moving([thing for thing in scanning.told if isinstance(thing, ArmStatus)][-1])
 
 
 def test_a_scan_that_stop_overtakes_never_begins(scanning):
@@ -225,7 +235,23 @@ def test_single_views_are_taken_again(scanning):
     assert [view.name for view in scanning.views()] == ["frame-000002"]
 
 
+def test_a_view_that_fails_is_told_with_its_reason(scanning):
+    home, (first, *others) = scanning.cell.robot.home_rad, scanning.cell.scan.views_rad
+    into_the_table = (home[0], 0.25, *home[2:])
+    scanning.cell = with_joints(scanning.cell, (first, into_the_table, *others))
+    scanning.start()
+    assert isinstance(scanning.end(), Finished)
+    failed = [one for one in scanning.told if isinstance(one, ViewDone) and one.view.state == "failed"]
+    assert [one.view.name for one in failed] == ["frame-000001"]
+    assert "table" in failed[0].view.problems[0]
+    assert failed[0].color is None
+    assert len(scanning.views()) == N_VIEWS + 1
+
+
+@pytest.mark.slow
 def test_views_that_show_more_are_proposed_and_taken(scanning):
+    scanning.cell = with_views(read_cell(), slice(None, None, 4))
+    n = len(scanning.cell.scan.views_rad)
     scanning.start(source="vase")
     scanning.end()
     scanning.host.start(ScanWork.propose, scanning.task, scanning.cell)
@@ -236,8 +262,15 @@ def test_views_that_show_more_are_proposed_and_taken(scanning):
     scanning.start(ScanWishes(adaptive=True), source="vase")
     assert isinstance(scanning.end(), Finished)
     planned = [thing for thing in scanning.told if isinstance(thing, ViewsPlanned)]
-    assert len(planned[-1].views) > N_VIEWS
-    assert len(scanning.views()) == len(planned[-1].views) - N_VIEWS
+    assert len(planned[-1].views) > n
+    assert len(scanning.views()) == len(planned[-1].views) - n
+
+
+def test_a_scan_that_saw_everything_needs_no_more_views(scanning):
+    scanning.start()
+    scanning.end()
+    scanning.host.start(ScanWork.propose, scanning.task, scanning.cell)
+    assert scanning.end().result == Proposal(0, 0.0)
 
 
 def test_what_cannot_be_scanned_is_a_sentence(scanning):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF, Qt, Signal
+from PySide6.QtCore import QObject, QPointF, Qt, QTimer, Signal
 
 from app.gui.views.scene.camera import Camera, Ray, Size
 from app.gui.views.scene.canvas import Canvas
@@ -38,6 +38,10 @@ class Navigator(QObject):
         self._boxes = boxes
         self._dragged: tuple[str, int] | None = None
         self._fitted: tuple[str, ...] = ()
+        self._soon = QTimer(self)
+        self._soon.setSingleShot(True)
+        self._soon.setInterval(0)
+        self._soon.timeout.connect(self.refit)
         self._stays_fitted = True
         self._input = SceneInput(canvas.widget, self)
 
@@ -61,7 +65,7 @@ class Navigator(QObject):
     def take_notice(self, name: str) -> None:
         """A layer appeared."""
         if not self._fitted or name in self._fitted:
-            self.refit()
+            self._soon.start()  # a page sets many layers one after the other
 
     def refit(self) -> None:
         """Bring into view what is to stay in view."""

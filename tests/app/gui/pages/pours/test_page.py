@@ -136,14 +136,41 @@ def test_another_session_is_compared_with(page, mug_session, block_session, qtbo
     assert page._compare.other is None
 
 
+def test_the_run_before_is_compared_with(page, mug_session, qtbot):
+    opened(page, mug_session, qtbot)
+    first = page._pours.grid
+    workspace = page.desk.workspace
+    workspace.edit(apply_settings(workspace.parameters, {"pouring.theta_fixed_rad": 1.0}), "one direction")
+    qtbot.waitUntil(lambda: button(page, "primary").text() == "Imagine", timeout=5_000)
+    with qtbot.waitSignal(page.desk.jobs.finished, timeout=60_000):
+        button(page, "primary").click()
+    qtbot.waitUntil(lambda: page._pours.grid.p.shape == (1, 3), timeout=5_000)
+    assert page._before is first
+    assert page.findChild(PourMap).selection == page._pours.chosen
+    assert "Only the direction 57° was imagined" in text_of(page, "chosen_why")
+    assert "not yet checked with the arm" in text_of(page, "chosen_pour")
+    chooser = page.findChild(QComboBox, "compare_with")
+    chooser.setCurrentIndex(2)
+    chooser.activated.emit(2)
+    assert page._compare.other.grid is first
+    assert "The run before" in text_of(page, "comparison")
+
+    with qtbot.waitSignal(page.desk.jobs.finished, timeout=60_000):
+        button(page, "check_with_arm").click()
+    qtbot.waitUntil(lambda: page._pours.motions is not None, timeout=5_000)
+    assert "The arm can make" in text_of(page, "chosen_why")
+    assert page._compare.other.grid is first, "the same pours: the comparison stays"
+
+
 def test_changed_parameters_make_it_stale(page, mug_session, qtbot):
     opened(page, mug_session, qtbot)
     workspace = page.desk.workspace
     workspace.edit(apply_settings(workspace.parameters, {"pouring.n_pour": 20}), "fewer candies")
-    qtbot.waitUntil(lambda: bool(text_of(page, "pours_stale")), timeout=5_000)
+    qtbot.waitUntil(lambda: "press Imagine" in page._choice.stale.text, timeout=5_000)
     assert button(page, "primary").text() == "Imagine"
     workspace.undo_stack.undo()
-    qtbot.waitUntil(lambda: not text_of(page, "pours_stale"), timeout=5_000)
+    qtbot.waitUntil(lambda: not page._choice.stale.text, timeout=5_000)
+    assert button(page, "primary").text() == "Review motion"
 
 
 def test_no_container_leads_to_the_imagination(page, block_session, qtbot):

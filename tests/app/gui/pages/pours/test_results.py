@@ -1,6 +1,7 @@
 """What the Pours page reads and says, without a window."""
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,12 @@ import pytest
 from app.gui.pages.pours.comparison import OtherPours, load_grid, one_direction, scratch_session
 from app.gui.pages.pours.results import load_pours
 from app.gui.pages.pours.scene import map_rotation_deg
-from app.gui.pages.pours.words import chosen_sentence, comparison_sentence, why_sentences
+from app.gui.pages.pours.words import (
+    chosen_sentence,
+    comparison_sentence,
+    feasibility_sentence,
+    why_sentences,
+)
 from app.motion_record import current_motions
 from core.errors import SessionError
 from core.session import Session
@@ -54,6 +60,12 @@ def test_no_container_says_why_with_numbers(block_session, cell):
     assert "no open container" in chosen_sentence(pours)
     n = pours.containability.n_drop
     assert f"Of the {n} candies dropped on this object, 0 stayed: 0.0 %" in why_sentences(pours)[0]
+
+
+def test_a_mesh_stands_in_no_cell(mug_session, cell):
+    pours = replace(load_pours(mug_session, cell, None), motions=None, stands_in_cell=False)
+    assert chosen_sentence(pours).endswith("imagined only.")
+    assert "stands in no cell" in feasibility_sentence(pours, *pours.chosen)
 
 
 def test_a_damaged_choice_is_told(mug_session, cell):

@@ -57,6 +57,7 @@ def click(scene, at):
 
 
 def camera(scene):
+    QApplication.processEvents()  # layers are brought into view together, when the loop comes round
     return scene._navigator.camera
 
 
@@ -258,8 +259,8 @@ def test_what_was_fitted_stays_in_view_when_the_size_changes_until_the_user_move
 
 def test_layers_can_be_fitted_before_they_come(scene):
     scene.set_points("room", [(-5, 0, 0), (5, 0, 0)])
-    scene.fit("object")
     before = camera(scene).distance_m
+    scene.fit("object")
     scene.set_mesh("object", *box_mesh((0, 0, 0), (0.1, 0.1, 0.1)))
     assert camera(scene).distance_m < before / 10
 

@@ -1,0 +1,1 @@
+"""Calibration: labelled objects judged with several sets of parameters, side by side."""

@@ -1,0 +1,60 @@
+"""The parameters for the next run, and keeping them as a preset."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QPushButton
+
+from app.gui.pages.page import SidePanel
+from app.gui.pages.saved_presets import preset_names
+from app.gui.theme import GRID_PX
+from app.gui.views.parameter_editor import ParameterEditor
+
+GROUPS = ("containability", "particle", "solver", "collision")
+
+
+class CalibrationSide(SidePanel):
+    """Parameter editor, the preset's name, and the buttons that run.
+
+    Attributes:
+        editor: of the parameters that decide Omega.
+        save_wanted: the name of a preset to be saved.
+    """
+
+    save_wanted = Signal(str)
+
+    def __init__(self) -> None:
+        super().__init__("")
+        self.primary.setText(self.tr("Run all"))
+        self.run_selected = QPushButton(self.tr("Run selected"))
+        self.run_selected.setObjectName("run_selected")
+        self.run_selected.setMinimumHeight(5 * GRID_PX)
+        self.add_button(self.run_selected)
+        self.column_note = QLabel()
+        self.column_note.setObjectName("column_note")
+        self.editor = ParameterEditor(GROUPS, preset_names())
+        self.body.addWidget(self.column_note)
+        self.body.addWidget(self.editor, 1)
+        self.body.addLayout(self._build_saving())
+
+    def _build_saving(self) -> QHBoxLayout:
+        self._name = QLineEdit()
+        self._name.setObjectName("preset_name")
+        self._name.setAccessibleName(self.tr("Name of the preset"))
+        self._name.setPlaceholderText(self.tr("name of a preset"))
+        self._save = QPushButton(self.tr("Save as preset"))
+        self._save.setObjectName("save_preset")
+        self._save.setEnabled(False)
+        self._save.setToolTip(self.tr("Keep these parameters; every list of presets offers them"))
+        self._name.textChanged.connect(lambda text: self._save.setEnabled(bool(text.strip())))
+        self._save.clicked.connect(lambda: self.save_wanted.emit(self._name.text().strip()))
+        row = QHBoxLayout()
+        row.setSpacing(GRID_PX)
+        row.addWidget(self._name, 1)
+        row.addWidget(self._save)
+        return row
+
+    def preset_saved(self) -> None:
+        """A preset was saved: offer it, and forget its name."""
+        self.editor.set_preset_names(preset_names())
+        self._name.clear()

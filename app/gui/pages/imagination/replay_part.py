@@ -1,0 +1,163 @@
+"""The drop in 3D with its time line."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QEvent, Qt
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from typing_extensions import override
+
+from app.gui.pages.imagination.loading import ShownDrop
+from app.gui.pages.imagination.phases import Phase, PhaseKey, push_of
+from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.scene import Scene3D, cylinder_mesh
+from app.gui.views.timeline import Section, Timeline
+from core.geometry import FloatArray, make_pose
+
+_SEE_THROUGH = 0.4
+_GROUND_THICK_M = 0.001
+
+
+class DropReplay(QWidget):
+    """Shows a drop at the time that the time line stands at.
+
+    Attributes:
+        scene: the 3D view.
+        timeline: plays the drop.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("drop_replay")
+        self._drop: ShownDrop | None = None
+        self.scene = Scene3D()
+        self.scene.setObjectName("drop_scene")
+        self.timeline = Timeline()
+        self.timeline.time_changed.connect(self._show_time)
+        self._legend = QLabel()
+        self._legend.setObjectName("drop_legend")
+        self._now = QLabel()
+        self._now.setObjectName("drop_now")
+        self._now.setProperty("role", "muted")
+        self._see_through = QPushButton(self.tr("See through"))
+        self._see_through.setObjectName("see_through")
+        self._see_through.setCheckable(True)
+        self._see_through.setChecked(True)
+        self._see_through.setToolTip(self.tr("Look through the object's walls at the candies behind them"))
+        self._see_through.toggled.connect(self._show_body)
+        self._build()
+
+    def _build(self) -> None:
+        top = QHBoxLayout()
+        top.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        top.addWidget(self._legend)
+        top.addSpacing(2 * GRID_PX)
+        top.addWidget(self._now)
+        top.addStretch(1)
+        top.addWidget(self._see_through)
+        bottom = QHBoxLayout()
+        bottom.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        bottom.addWidget(self.timeline)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(top)
+        column.addWidget(self.scene, 1)
+        column.addLayout(bottom)
+        self.show_drop(None)
+
+    def show_drop(self, drop: ShownDrop | None) -> None:
+        """Show another drop at its end, where the verdict is seen; none: nothing."""
+        is_first = self._drop is None
+        self._drop = drop
+        self._see_through.setVisible(drop is not None)
+        if drop is None:
+            self.scene.clear()
+            self.timeline.set_sections(0.0)
+        else:
+            self._fill(drop)
+            sections = [Section(self._title(phase.key), phase.begin_s, phase.end_s) for phase in drop.phases]
+            self.timeline.set_sections(drop.moments.duration_s, sections)
+            self.timeline.set_time(drop.moments.duration_s)
+            if is_first:
+                self.scene.fit("object", "ground", "start")
+        self._show_legend()
+
+    def _fill(self, drop: ShownDrop) -> None:
+        found = drop.containability
+        self._show_body()
+        middle = found.aabb_m.mean(axis=0)
+        under_m = [middle[0], middle[1], drop.ground_m - _GROUND_THICK_M]
+        disc = cylinder_mesh(drop.ground_radius_m, _GROUND_THICK_M)
+        self.scene.set_mesh("ground", *disc, color="line", T_world=make_pose(np.eye(3), under_m))
+        self.scene.set_line("start", _rectangle_m(found.drop_positions_m), color="muted", width_px=1)
+        self.scene.set_candies("candies", found.n_drop, drop.candy_radius_m, found.retained)
+
+    def _show_body(self) -> None:
+        if self._drop is not None:
+            opacity = _SEE_THROUGH if self._see_through.isChecked() else 1.0
+            self.scene.set_prepared_mesh("object", self._drop.body, opacity=opacity)
+
+    def _show_time(self, time_s: float) -> None:
+        drop = self._drop
+        if drop is None:
+            self._now.clear()
+            return
+        self.scene.set_candy_positions("candies", drop.moments.positions_m(time_s))
+        self.scene.set_pose("object", drop.moments.T_world_body(time_s))
+        self._now.setText(self._words(drop, time_s))
+
+    def _title(self, key: PhaseKey) -> str:
+        titles: dict[PhaseKey, str] = {
+            "drop": self.tr("drop"),
+            "tilt_x": self.tr("tilt x"),
+            "tilt_y": self.tr("tilt y"),
+            "shove": self.tr("shove"),
+        }
+        return titles[key]
+
+    def _words(self, drop: ShownDrop, time_s: float) -> str:
+        """What happens at a time."""
+        phase = _phase_at(drop.phases, time_s)
+        if phase is None:
+            return self.tr("End")
+        if phase.key == "drop":
+            return self.tr("Candies fall and settle")
+        if phase.key == "shove":
+            return self.tr("Shoved along {direction}").format(
+                direction=push_of(drop.settings, time_s - phase.begin_s)
+            )
+        angle_deg = float(np.degrees(drop.settings.rotation_rad))
+        axis = "x" if phase.key == "tilt_x" else "y"
+        return self.tr("Tilted by up to {angle:.3g}° about {axis}").format(angle=angle_deg, axis=axis)
+
+    def _show_legend(self) -> None:
+        if self._drop is None:
+            self._legend.clear()
+            return
+        theme, found = theme_of(self), self._drop.containability
+        kept = self.tr("{n} kept").format(n=found.n_in)
+        lost = self.tr("{n} lost").format(n=found.n_drop - found.n_in)
+        self._legend.setTextFormat(Qt.TextFormat.RichText)
+        self._legend.setText(
+            f'<span style="color:{theme.kept}">●</span> {kept} &nbsp; '
+            f'<span style="color:{theme.lost}">◆</span> {lost}'
+        )
+
+    @override
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self._show_legend()
+
+
+def _phase_at(phases: tuple[Phase, ...], time_s: float) -> Phase | None:
+    return next((phase for phase in phases if phase.begin_s <= time_s < phase.end_s), None)
+
+
+def _rectangle_m(drop_positions_m: FloatArray) -> FloatArray:
+    """Closed line (5, 3) around where the candies begin, at the highest of them."""
+    positions = drop_positions_m
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    corners = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1]), (low[0], low[1])]
+    return np.array([[x, y, high[2]] for x, y in corners])

@@ -1,0 +1,209 @@
+"""Reading what the page shows, ready to be drawn. Qt-free, called in a thread."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from app.gui.views.scene import ColorScale, PreparedMesh, prepare_mesh
+from core.geometry import AnyArray, FloatArray
+from core.mesh import TriangleMesh
+from core.mesh_topology import join, topology
+from core.ply import read_ply
+from core.session import Session
+
+if TYPE_CHECKING:  # they bring the fusion along
+    from core.collision import CollisionModel
+    from core.quality import ScanQuality
+    from core.reconstruction import Reconstruction
+    from core.scan import CropBox
+
+MM = 1000.0
+LEAST_SCALE_MM = 0.5
+"""Of a difference; less is noise and should not look like much."""
+_SHOWN_SHARE = 98.0
+_GOLDEN = 0.618
+
+
+@dataclass(frozen=True)
+class ModelKey:
+    """Which files are to be shown: the session's folder and the digests of its stages, empty for none."""
+
+    folder: Path
+    scan: str
+    surface: str
+    quality: str
+    collision: str
+
+
+@dataclass(frozen=True, eq=False)
+class Collision:
+    """What the physics collides with.
+
+    Attributes:
+        method: as in the parameters, or `given`.
+        n_parts: how many bodies.
+        n_faces: of all together.
+        mesh: wires for one exact surface, tinted parts otherwise.
+        centers_m: (F, 3) of its faces.
+    """
+
+    method: str
+    n_parts: int
+    n_faces: int
+    mesh: PreparedMesh
+    centers_m: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ShownModel:
+    """A surface and all that is known of it.
+
+    Attributes:
+        digest: of its stage's files.
+        mesh: the surface.
+        body: the same, ready to be drawn.
+        centers_m: (F, 3) of its faces.
+        is_closed: whether it encloses a volume.
+        reconstruction: none for an imported mesh.
+        quality: of the scan; none if it was not judged with this surface.
+        collision: none if it was not built from this surface.
+        health: how well the poses agree, in sentences; empty for an imported mesh.
+    """
+
+    digest: str
+    mesh: TriangleMesh
+    body: PreparedMesh
+    centers_m: FloatArray
+    is_closed: bool
+    reconstruction: Reconstruction | None
+    quality: ScanQuality | None
+    collision: Collision | None
+    health: str
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """What a session holds for the page.
+
+    Attributes:
+        key: what it was read for.
+        own_box: the crop box that holds while the parameters give none; none for an imported mesh.
+        model: none before there is one.
+    """
+
+    key: ModelKey
+    own_box: CropBox | None
+    model: ShownModel | None
+
+
+def key_of(session: Session) -> ModelKey:
+    """Look up the stages' digests; cheap."""
+    records = {
+        stage: session.record(stage) for stage in ("scan", "mesh", "reconstruction", "quality", "collision")
+    }
+    digests = {stage: "" if record is None else record.digest for stage, record in records.items()}
+    surface = digests["mesh"] or digests["reconstruction"]
+    return ModelKey(session.path, digests["scan"], surface, digests["quality"], digests["collision"])
+
+
+def load(key: ModelKey) -> Loaded:
+    """Read a session's model.
+
+    Raises:
+        SessionError: a file is damaged.
+        InputError: the scan's facts are damaged.
+    """
+    session = Session.open(key.folder)
+    is_mesh = session.record("mesh") is not None
+    own_box = None if is_mesh or not key.scan else _own_box(session)
+    return Loaded(key, own_box, _load_model(session, key, is_mesh) if key.surface else None)
+
+
+def _own_box(session: Session) -> CropBox:
+    from core.scan.authors_layout import FACTS_FILE
+    from core.scan.crop_box import RELEASED_BOX
+    from core.scan.facts import read_facts
+
+    return read_facts(session.folder("scan") / FACTS_FILE)[1] or RELEASED_BOX
+
+
+def _load_model(session: Session, key: ModelKey, is_mesh: bool) -> ShownModel:
+    reconstruction = None if is_mesh else _reconstruction(session)
+    source = "mesh" if is_mesh else "reconstruction"
+    mesh = read_ply(session.folder("mesh") / "mesh.ply") if reconstruction is None else reconstruction.mesh
+    return ShownModel(
+        digest=key.surface,
+        mesh=mesh,
+        body=prepare_mesh(mesh.vertices_m, mesh.faces),
+        centers_m=_centers_m(mesh),
+        is_closed=topology(mesh).is_closed,
+        reconstruction=reconstruction,
+        quality=_quality(session) if _is_of(session, "quality", "reconstruction", key.surface) else None,
+        collision=_collision(session) if _is_of(session, "collision", source, key.surface) else None,
+        health="" if reconstruction is None else _health(reconstruction),
+    )
+
+
+def _is_of(session: Session, stage: str, source: str, digest: str) -> bool:
+    """Whether a stage was made from the very surface that is shown."""
+    record = session.record(stage)
+    return record is not None and record.inputs.get(source) == digest
+
+
+def _reconstruction(session: Session) -> Reconstruction:
+    from core.reconstruction import Reconstruction
+
+    return Reconstruction.load(session.folder("reconstruction"))
+
+
+def _quality(session: Session) -> ScanQuality:
+    from core.quality import ScanQuality
+
+    return ScanQuality.load(session.folder("quality"))
+
+
+def _collision(session: Session) -> Collision:
+    from core.collision import CollisionModel
+
+    model = CollisionModel.load(session.folder("collision"))
+    whole = join(model.parts)
+    mesh = (
+        _tinted(model) if model.is_convex else prepare_mesh(whole.vertices_m, whole.faces, is_wireframe=True)
+    )
+    return Collision(model.method, len(model.parts), len(whole.faces), mesh, _centers_m(whole))
+
+
+def _tinted(model: CollisionModel) -> PreparedMesh:
+    """The parts with tints that differ from their neighbours'."""
+    whole = join(model.parts)
+    tints = [(_GOLDEN * part) % 1 for part in range(len(model.parts))]
+    values = np.repeat(tints, [len(part.vertices_m) for part in model.parts])
+    return prepare_mesh(whole.vertices_m, whole.faces, values=values, scale=ColorScale("", "", 0, 1))
+
+
+def _health(reconstruction: Reconstruction) -> str:
+    from core.report.tables import health_sentence, refinement_sentence
+
+    return f"{health_sentence(reconstruction)} {refinement_sentence(reconstruction)}".strip()
+
+
+def _centers_m(mesh: TriangleMesh) -> FloatArray:
+    centers: FloatArray = mesh.vertices_m[mesh.faces].mean(axis=1)
+    return centers
+
+
+def colored(body: PreparedMesh, values: AnyArray, scale: ColorScale) -> PreparedMesh:
+    """Return a mesh with a number (V,) for each vertex; its normals need not be computed again."""
+    return replace(body, values=values.astype(np.float32), scale=scale)
+
+
+def difference_scale(difference_m: FloatArray, label: str) -> ColorScale:
+    """Return a scale, the same both ways, for distances (V,) in metres that are shown in mm."""
+    most_mm = max(float(np.percentile(np.abs(difference_m), _SHOWN_SHARE)) * MM, LEAST_SCALE_MM)
+    decade = 10.0 ** np.floor(np.log10(most_mm))
+    limit = next(step * decade for step in (1, 2, 5, 10) if step * decade >= most_mm * (1 - 1e-9))
+    return ColorScale(label, "mm", -float(limit), float(limit))

@@ -1,0 +1,78 @@
+"""The plan in words, and what somebody has to see to before the arm moves."""
+
+from __future__ import annotations
+
+import time
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QCheckBox
+
+from app.gui.pages.fact_grid import FactGrid
+from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.words import checks, minutes_words, plan_facts
+from app.gui.theme import GRID_PX
+from app.jobs.arm_news import PlannedPour
+
+
+class CheckPanel(Panel):
+    """Ticks are gone with every new plan.
+
+    Attributes:
+        ticked: something was ticked or not any more.
+    """
+
+    ticked = Signal()
+
+    def __init__(self) -> None:
+        super().__init__("check_panel", self.tr("Check, then hold to pour"))
+        self._number = 0
+        self._note = label("plan_note", "muted")
+        self._facts = FactGrid("plan_facts")
+        self._checks: tuple[QCheckBox, ...] = ()
+        self._expiry = label("plan_expiry", "muted")
+        self._reason = label("hold_reason", "attention")
+        for one in (self._facts, self._note):
+            self.column.addWidget(one)
+        self.column.addWidget(label("checks_heading", "heading", self.tr("I have seen to it:")))
+        self._checks = tuple(self._check(name) for name, *_ in checks(0))
+        for one in (self._expiry, self._reason):
+            self.column.addWidget(one)
+
+    def show_plan(self, planned: PlannedPour, n_candies: int) -> None:
+        """Show a plan; of another one nothing is ticked yet."""
+        say(self._note, planned.note)
+        self._facts.set_facts(plan_facts(planned.plan))
+        for check, (_, words, tip) in zip(self._checks, checks(n_candies), strict=True):
+            check.setText(words)
+            check.setAccessibleName(words)
+            check.setToolTip(tip)
+            if planned.number != self._number:
+                check.setChecked(False)
+        self._number = planned.number
+        self.look(planned)
+
+    def look(self, planned: PlannedPour) -> None:
+        """Say how long the plan still holds."""
+        left_s = planned.expires_s - time.monotonic()
+        said = self.tr("The plan holds for another {time}.").format(time=minutes_words(left_s))
+        say(self._expiry, said if left_s > 0 else "")
+        say(self._reason, self.reason(planned))
+
+    def reason(self, planned: PlannedPour) -> str:
+        """Why the arm must not move yet; empty if it may."""
+        if time.monotonic() >= planned.expires_s:
+            return self.tr("The plan has expired: plan again.")
+        left = sum(not check.isChecked() for check in self._checks)
+        if left == len(self._checks):
+            return self.tr("Tick each point when you have seen to it.")
+        if left:
+            return self.tr("{n} more to tick.").format(n=left)
+        return ""
+
+    def _check(self, name: str) -> QCheckBox:
+        check = QCheckBox()
+        check.setObjectName(f"check_{name}")
+        check.setMinimumHeight(3 * GRID_PX)
+        check.toggled.connect(lambda _: self.ticked.emit())
+        self.column.addWidget(check)
+        return check

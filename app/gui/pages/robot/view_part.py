@@ -1,0 +1,212 @@
+"""The cell in 3D: the arm as it is, and see-through what was planned, with a time line to scrub."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtWidgets import QLabel, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+
+from app.gui.pages.robot.loading import ShownCell
+from app.gui.pages.robot.motion import Moment, ShownMotion
+from app.gui.pages.robot.words import move_words
+from app.gui.theme import GRID_PX
+from app.gui.views.scene import PreparedMesh, Scene3D
+from app.gui.views.timeline import Section, Timeline
+from core.geometry import FloatArray, make_pose
+from core.motion.kinematics import flange_pose
+
+AHEAD_S = 1.0
+"""So far the ghost is ahead of the moving arm, in seconds of the plan."""
+_CUP_OPACITY, _GHOST_CUP_OPACITY, _GHOST_ARM = 0.55, 0.3, "planned arm"
+_SAME_RAD = 5e-4
+_APART_RAD = 0.01
+"""Nearer than this the ghost would only blur the arm."""
+
+
+class ArmView(QWidget):
+    """Shows the cell, the object, the arm and the cup now, and the planned motion at the time line's time.
+
+    Attributes:
+        scene: the 3D view.
+        timeline: of the planned motion.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("arm_view")
+        self._cell: ShownCell | None = None
+        self._motion: ShownMotion | None = None
+        self._joints_rad: FloatArray | None = None
+        self._grip: tuple[bool, FloatArray | None] = False, None
+        self._is_following = False
+        self.scene = Scene3D()
+        self.scene.setObjectName("robot_scene")
+        self.scene.set_empty_text(self.tr("The arm is shown here."))
+        self.timeline = Timeline()
+        self.timeline.time_changed.connect(self._show_time)
+        self._caption = QLabel()
+        self._caption.setObjectName("arm_caption")
+        self._now = QLabel()
+        self._now.setObjectName("plan_now")
+        self._hint = QLabel(self.tr("The planned motion can be looked at here, before anything moves."))
+        self._hint.setProperty("role", "muted")
+        self._strip = QStackedWidget()
+        self._build()
+
+    def _build(self) -> None:
+        for line in (self._caption, self._now, self._hint):
+            line.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self._strip.addWidget(self._hint)
+        self._strip.addWidget(self.timeline)
+        self._strip.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        bottom = QVBoxLayout()
+        bottom.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        bottom.addWidget(self._now)
+        bottom.addWidget(self._strip)
+        top = QVBoxLayout()
+        top.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        top.addWidget(self._caption)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addLayout(top)
+        column.addWidget(self.scene, 1)
+        column.addLayout(bottom)
+        self._show_caption()
+
+    def show_cell(self, cell: ShownCell) -> None:
+        """Show another cell, with its arm at home until something else is known."""
+        self._cell = cell
+        scene = self.scene
+        for name in [name for name in scene.layers() if name.startswith("obstacle")]:
+            scene.remove(name)
+        scene.set_mesh("table", *cell.table, color="line")
+        scene.set_mesh("platform", *cell.platform, color="raised", opacity=0.6)
+        for k, box in enumerate(cell.obstacles):
+            scene.set_mesh(f"obstacle {k}", *box, color="muted", opacity=0.6)
+        scene.set_label("station", cell.station_m, self.tr("cup's station"))
+        scene.set_points("room", cell.room_m, color="scene", size_px=1)  # what is to be seen, itself unseen
+        scene.set_prepared_mesh("cup", cell.cup, color="kept", opacity=_CUP_OPACITY)
+        scene.set_prepared_mesh("planned cup", cell.cup, color="ghost", opacity=_GHOST_CUP_OPACITY)
+        scene.set_arm(_GHOST_ARM, cell.arm, cell.home_rad, tools=cell.tools, is_ghost=True)
+        self._set_arm(is_connected=self._joints_rad is not None)
+        self._place_cup()
+        self._show_time(self.timeline.time_s)
+        scene.fit("room")
+
+    def show_object(self, mesh: PreparedMesh | None) -> None:
+        """Show another object; none: none."""
+        if mesh is None:
+            self.scene.remove("object")
+        else:
+            self.scene.set_prepared_mesh("object", mesh)
+
+    def show_arm(self, joints_rad: FloatArray | None, is_gripper_closed: bool) -> None:
+        """Show where the arm is now; none: it is not connected, and drawn at its home."""
+        was_connected, is_connected = self._joints_rad is not None, joints_rad is not None
+        before, self._joints_rad = self._joints_rad, joints_rad
+        if self._cell is None:
+            return
+        if was_connected != is_connected:
+            self._set_arm(is_connected)
+            self._show_caption()
+        elif joints_rad is not None and before is not None and _differ(joints_rad, before, _SAME_RAD):
+            self.scene.set_joints("arm", joints_rad)
+        elif is_gripper_closed == self._grip[0]:
+            return
+        self._grip = is_gripper_closed, self._grip[1]
+        self._place_cup()
+
+    def show_motion(self, motion: ShownMotion | None) -> None:
+        """Show what was planned from its beginning; none: nothing."""
+        if motion is self._motion:
+            return
+        self._motion = motion
+        for name in ("way", "pivot"):
+            self.scene.remove(name)
+        if motion is None:
+            self.timeline.set_sections(0.0)
+        else:
+            self._grip = self._grip[0], motion.T_flange_cup
+            self.scene.set_line("way", motion.mouth_m, color="ghost", width_px=2)
+            if motion.pivot_m is not None:
+                self.scene.set_label("pivot", motion.pivot_m, self.tr("pivot"))
+            ends_s = [*motion.begins_s[1:], motion.duration_s]
+            sections = [
+                Section(move.name, begin_s, end_s)
+                for move, begin_s, end_s in zip(motion.moves, motion.begins_s, ends_s, strict=True)
+            ]
+            self.timeline.set_sections(motion.duration_s, sections)
+        self._strip.setCurrentWidget(self._hint if motion is None else self.timeline)
+        self._show_time(self.timeline.time_s)
+        self._show_caption()
+
+    def follow(self, done_s: float | None) -> None:
+        """Let the time line go with the moving arm, the ghost a little ahead; none: it has ended."""
+        if done_s is None and not self._is_following:
+            return
+        self._is_following = done_s is not None
+        self.timeline.setEnabled(not self._is_following)
+        if done_s is not None:
+            self.timeline.pause()
+            self.timeline.set_time(done_s)
+        self._show_caption()
+
+    def _set_arm(self, is_connected: bool) -> None:
+        """An arm of which nobody knows where it is, is see-through."""
+        assert self._cell is not None, "called when there is a cell"
+        cell = self._cell
+        joints_rad = cell.home_rad if self._joints_rad is None else self._joints_rad
+        self.scene.set_arm("arm", cell.arm, joints_rad, tools=cell.tools, is_ghost=not is_connected)
+
+    def _place_cup(self) -> None:
+        """In the hand if the gripper holds it, else at its station; away if nobody knows how it is held."""
+        cell = self._cell
+        if cell is None:
+            return
+        is_closed, T_flange_cup = self._grip
+        is_known = not is_closed or (T_flange_cup is not None and self._joints_rad is not None)
+        self.scene.set_visible("cup", is_known)
+        if is_closed and T_flange_cup is not None and self._joints_rad is not None:
+            self.scene.set_pose("cup", flange_pose(cell.arm, self._joints_rad) @ T_flange_cup)
+        else:
+            self.scene.set_pose("cup", make_pose(np.eye(3), cell.station_m))
+
+    def _show_time(self, time_s: float) -> None:
+        """Put the ghost to where the plan is at a time."""
+        cell, motion = self._cell, self._motion
+        if cell is None:
+            return
+        if motion is None:
+            self.scene.set_visible(_GHOST_ARM, False)
+            self.scene.set_visible("planned cup", False)
+            self._now.clear()
+            return
+        moment = motion.at(time_s + AHEAD_S if self._is_following else time_s)
+        now_rad = self._joints_rad
+        self.scene.set_joints(_GHOST_ARM, moment.joints_rad)
+        is_apart = now_rad is None or _differ(moment.joints_rad, now_rad, _APART_RAD)
+        self.scene.set_visible(_GHOST_ARM, is_apart)
+        self.scene.set_visible("planned cup", moment.holds_cup and is_apart)
+        if moment.holds_cup:
+            T_base_cup = flange_pose(cell.arm, moment.joints_rad) @ motion.T_flange_cup
+            self.scene.set_pose("planned cup", T_base_cup)
+        self._now.setText(self._moment_words(motion, motion.at(time_s)))
+
+    def _moment_words(self, motion: ShownMotion, moment: Moment) -> str:
+        name = motion.moves[moment.index].name
+        return self.tr("{name}: {words}").format(name=name, words=move_words(name))
+
+    def _show_caption(self) -> None:
+        if self._joints_rad is None:
+            said = self.tr("Not connected: the arm is drawn at its home.")
+        elif self._motion is None:
+            said = self.tr("The arm as it stands now.")
+        elif self._is_following:
+            said = self.tr("Solid: the arm now. See-through: the plan, a second ahead.")
+        else:
+            said = self.tr("Solid: the arm now. See-through: the plan at the time below.")
+        self._caption.setText(said)
+
+
+def _differ(one_rad: FloatArray, other_rad: FloatArray, by_rad: float) -> bool:
+    return bool(np.abs(one_rad - other_rad).max() > by_rad)

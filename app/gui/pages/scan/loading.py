@@ -1,0 +1,246 @@
+"""What the Scan page shows of a session and of the cell, read in the background. Knows no Qt."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from app.gui.views.scene.prepared import PreparedMesh, prepare_mesh
+from app.jobs.scan_news import ViewNews
+from app.jobs.scan_telling import planned_pose
+from app.scanning import IN_PROGRESS
+from core.errors import PoursightError
+from core.session import Session
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from core.geometry import FloatArray
+    from core.mesh import TriangleMesh
+    from core.quality import ScanQuality
+    from core.reconstruction import Reconstruction
+    from hardware.cell import CellSettings
+    from hardware.scanning import ViewRecord
+
+Source = Literal["nothing", "kept", "scan", "mesh"]
+"""Nothing yet; views of a scan that was interrupted; a finished scan; an imported mesh."""
+COLOR_ENDING, DEPTH_ENDING, POSE_ENDING = ".color.png", ".depth.png", ".pose.txt"
+FRAMES = "rgbd"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A view's images on the disk; another one when they were taken again.
+
+    Attributes:
+        color: the colour image's file.
+        stamp_ns: when it was written.
+    """
+
+    color: Path
+    stamp_ns: int
+
+    @property
+    def depth(self) -> Path:
+        """The depth image's file."""
+        return self.color.with_name(self.color.name.removesuffix(COLOR_ENDING) + DEPTH_ENDING)
+
+
+@dataclass(frozen=True, eq=False)
+class ScanContents:
+    """What a session holds of a scan.
+
+    Attributes:
+        source: what is there.
+        views: in their order, planned ones among them.
+        pictures: of those that have images, by name.
+        object_name: what stands in a simulated cell: a built-in object's name or a mesh file; none otherwise.
+        is_of_cell: whether the chosen cell can take further views of it.
+        quality: how good the scan is; none before it was judged.
+        pose_error_m: how far a view's surface errs, poses corrected as far as they were; none if not known.
+        mesh: the surface, ready to be drawn; none before there is one.
+        extents_m: (3,) the surface's size along the axes.
+    """
+
+    source: Source
+    views: tuple[ViewNews, ...] = ()
+    pictures: dict[str, Picture] | None = None
+    object_name: str | None = None
+    is_of_cell: bool = False
+    quality: ScanQuality | None = None
+    pose_error_m: float | None = None
+    mesh: PreparedMesh | None = None
+    extents_m: FloatArray | None = None
+
+    @property
+    def n_taken(self) -> int:
+        """How many views have images."""
+        return sum(view.state in ("taken", "poor") for view in self.views)
+
+
+def load_contents(session: Session | None, cell: CellSettings | None, seed: int) -> ScanContents:
+    """Read everything the page shows of a session.
+
+    Args:
+        session: the open one.
+        cell: that is worked with.
+        seed: of the parameters; a simulated scan goes on with its own seed only.
+
+    Raises:
+        PoursightError: a file is damaged.
+    """
+    from hardware.scanning.keeping import read_origin, read_views
+
+    if session is None:
+        return _planned(cell)
+    if session.record("mesh") is not None:
+        return _imported_mesh(session)
+    folder = session.path / IN_PROGRESS
+    if read_views(folder):
+        return _views(folder, "kept", cell, read_origin(folder), seed)
+    record = session.record("scan")
+    if record is None:
+        return _planned(cell)
+    return _with_results(session, _views(session.path / "scan", "scan", cell, record.parameters, seed))
+
+
+def load_images(picture: Picture) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
+    """Read a view's colour (H, W, 3) and depth (H, W) in metres.
+
+    Raises:
+        InputError: a file is missing or damaged.
+    """
+    from core.scan.images import read_color, read_depth
+
+    return read_color(picture.color), read_depth(picture.depth)
+
+
+def load_hidden_area(session: Session) -> float:
+    """Return how much of the inside a scan did not see, in square metres of where the views ended.
+
+    Raises:
+        SessionError: the scan was not judged yet.
+    """
+    from core.quality import ScanQuality
+
+    return ScanQuality.load(session.folder("quality")).cavity.area_m2
+
+
+def object_names() -> tuple[str, ...]:
+    """Return the built-in objects of the simulated cell."""
+    from hardware.simulation.objects import BUILTIN_OBJECTS
+
+    return tuple(BUILTIN_OBJECTS)
+
+
+def _planned(cell: CellSettings | None) -> ScanContents:
+    """What the cell will do; a recorded scan tells its views when it is played."""
+    from hardware.scanning.views import name_views
+
+    if cell is None or cell.camera.kind == "replay":
+        return ScanContents("nothing")
+    views = name_views(cell.scan.views_rad)
+    return ScanContents(
+        "nothing",
+        tuple(ViewNews(v.name, "pending", (), planned_pose(cell, v.joints_rad)) for v in views),
+    )
+
+
+def _imported_mesh(session: Session) -> ScanContents:
+    from core.ply import read_ply
+
+    mesh = read_ply(session.folder("mesh") / "mesh.ply")
+    return ScanContents("mesh", mesh=_prepared(mesh), extents_m=mesh.extents_m)
+
+
+def _views(
+    folder: Path, source: Source, cell: CellSettings | None, origin: dict[str, Any], seed: int
+) -> ScanContents:
+    from hardware.scanning.keeping import read_views
+
+    records = read_views(folder)
+    frames = folder / FRAMES
+    if records:
+        views = [_view(record, frames, cell) for record in records]
+    else:  # imported: nobody noted what became of each view
+        names = sorted(path.name.removesuffix(COLOR_ENDING) for path in frames.glob("*" + COLOR_ENDING))
+        views = [ViewNews(name, "taken", (), _kept_pose(frames, name)) for name in names]
+    named = origin.get("object")
+    return ScanContents(
+        source,
+        tuple(views),
+        {path.name.removesuffix(COLOR_ENDING): _picture(path) for path in frames.glob("*" + COLOR_ENDING)},
+        object_name=str(named) if named is not None else None,
+        is_of_cell=cell is not None and _is_of_cell(origin, cell, seed),
+    )
+
+
+def _is_of_cell(origin: dict[str, Any], cell: CellSettings, seed: int) -> bool:
+    is_recorded = cell.camera.kind == "replay"
+    same_cell = origin.get("cell") == json.loads(cell.model_dump_json())
+    return same_cell and origin.get("seed", seed) == seed and not is_recorded
+
+
+def _view(record: ViewRecord, frames: Path, cell: CellSettings | None) -> ViewNews:
+    pose = _kept_pose(frames, record.view.name) if record.has_image else None
+    if pose is None and cell is not None and any(record.view.joints_rad):
+        pose = planned_pose(cell, record.view.joints_rad)
+    return ViewNews(record.view.name, record.state.value, record.problems, pose)
+
+
+def _kept_pose(frames: Path, name: str) -> FloatArray | None:
+    from core.scan.matrices import read_pose
+
+    try:
+        return read_pose(frames / (name + POSE_ENDING))
+    except PoursightError:
+        return None  # the view is shown without its place
+
+
+def _picture(path: Path) -> Picture:
+    return Picture(path, path.stat().st_mtime_ns)
+
+
+def _with_results(session: Session, contents: ScanContents) -> ScanContents:
+    """Add what was made from the scan, as far as it is there."""
+    from dataclasses import replace
+
+    from core.quality import ScanQuality
+    from core.reconstruction import Reconstruction
+
+    if session.record("quality") is not None:
+        quality = ScanQuality.load(session.folder("quality"))
+        contents = replace(contents, quality=quality, views=_with_problems(contents.views, quality))
+    if session.record("reconstruction") is not None:
+        model = Reconstruction.load(session.folder("reconstruction"))
+        contents = replace(
+            contents,
+            mesh=_prepared(model.mesh),
+            extents_m=model.mesh.extents_m,
+            pose_error_m=_pose_error_m(model),
+        )
+    return contents
+
+
+def _with_problems(views: tuple[ViewNews, ...], quality: ScanQuality) -> tuple[ViewNews, ...]:
+    """An imported view has the problems that the judgement found."""
+    found = {view.name: view.problems for view in quality.views if view.problems}
+    return tuple(
+        ViewNews(view.name, "poor", found[view.name], view.T_base_camera)
+        if view.state == "taken" and view.name in found
+        else view
+        for view in views
+    )
+
+
+def _pose_error_m(model: Reconstruction) -> float | None:
+    if model.refinement is not None:
+        return model.refinement.view_error_m
+    return model.pose_health.sd_height_m
+
+
+def _prepared(mesh: TriangleMesh) -> PreparedMesh:
+    return prepare_mesh(mesh.vertices_m, mesh.faces)

@@ -1,0 +1,318 @@
+"""The Scan page: the arm looks at the object from all sides, or a scan or a mesh comes from a file."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtWidgets import QPushButton, QVBoxLayout
+from typing_extensions import override
+
+from app.gui.desk.desk import Desk
+from app.gui.pages.page import Page
+from app.gui.pages.scan.cell_picture import picture_cell
+from app.gui.pages.scan.dropping import DropTarget
+from app.gui.pages.scan.importing import Imports
+from app.gui.pages.scan.left_part import ScanLeft, ScanSplit
+from app.gui.pages.scan.loading import ScanContents, load_contents, object_names
+from app.gui.pages.scan.shown_images import ShownImages
+from app.gui.pages.scan.side_part import ScanSide
+from app.gui.pages.scan.standing import Deed, Situation, remarks_of, verdict_of
+from app.gui.pages.scan.view_table import ViewTable
+from app.gui.pages.scan.work import ScanJobs
+from app.gui.views.scene import PreparedMesh, prepare_mesh
+from app.jobs.scan_news import MeshGrown, Proposal, ViewDone, ViewsPlanned
+from app.scanning import ScanWishes
+from core.errors import PoursightError
+from core.pipeline.needs import Freshness
+
+_REAL_CELL_NAME = "object"
+
+
+class ScanPage(Page):
+    """Shows the session's scan, and the one under way."""
+
+    KEY = "scan"
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(desk)
+        self.left, self.side = ScanLeft(), ScanSide()
+        self._work = ScanJobs(desk, self.KEY, self)
+        self._imports = Imports(desk, self._work, self._is_empty)
+        self._views = ViewTable()
+        self._images = ShownImages(self.side, self._views, desk.background)
+        self._contents: ScanContents | None = None
+        self._folder: Path | None = None
+        self._grown: PreparedMesh | None = None
+        self._proposal: Proposal | None = None
+        self._can_pause = self._is_paused = False
+        self._is_pressed = self._has_arm = False
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(ScanSplit(self.left, self.side))
+        self._drops = DropTarget(self)
+        self._connect()
+        desk.background.run("built-in objects", object_names, self.side.choice.set_names)
+        self._show_cell()
+
+    def _connect(self) -> None:
+        desk, side = self.desk, self.side
+        side.primary.clicked.connect(self._press)
+        side.start_anew.clicked.connect(lambda: self._scan(ScanWishes(restart=True)))
+        side.take_again.clicked.connect(self._take_selected)
+        side.follow.clicked.connect(self._follow)
+        side.folder_chosen.connect(self._imports.take_folder)
+        side.mesh_chosen.connect(self._imports.take_mesh)
+        side.choice.changed.connect(self._look)
+        self.left.grid.selected.connect(self._select)
+        self.left.view.view_picked.connect(self._select)
+        self.left.verdict.action.clicked.connect(self._act)
+        self._drops.arrived.connect(self._imports.take_dropped)
+        self._work.proposed.connect(self._take_proposal)
+        desk.cell.changed.connect(self._show_cell)
+        desk.arm.changed.connect(self._show_arm)
+        desk.jobs.news.connect(self._hear)
+        desk.jobs.started.connect(lambda _: self._look())
+        for signal in (desk.jobs.finished, desk.jobs.failed):
+            signal.connect(lambda *_: self._job_ended())
+
+    # What the session holds
+
+    @override
+    def refresh(self) -> None:
+        if self._work.is_scanning:
+            self._is_outdated = True  # the news tell; afterwards the files do
+            return
+        workspace = self.desk.workspace
+        if workspace.folder != self._folder:
+            self._folder = workspace.folder
+            self._contents = self._proposal = self._grown = None
+            self._views.forget()
+            self._images.forget()
+        cell, seed = self.desk.cell.settings, workspace.parameters.seed
+        load = partial(load_contents, workspace.session, cell, seed)
+        self.desk.background.run("scan", load, partial(self._take_over, self._folder), self._fail)
+        self._look()
+
+    def _take_over(self, folder: Path | None, contents: ScanContents) -> None:
+        if folder != self.desk.workspace.folder or self._work.is_scanning:
+            return
+        is_first = self._contents is None
+        self._contents = contents
+        self._views.take_over(contents)
+        if is_first and contents.object_name is not None:
+            self.side.choice.choose(contents.object_name)
+        view = self.left.view
+        view.show_alone(contents.mesh if contents.source == "mesh" else None)
+        if contents.source != "mesh" and (contents.mesh is not None or self._grown is None):
+            view.show_mesh(contents.mesh)  # what grew while the views were taken stays until there is a model
+        self._show_views()
+        selected = self._images.selected
+        if selected is None and contents.n_taken:
+            self._select(min(self._images.latest, len(contents.views) - 1))
+        elif selected is not None and selected < len(self._views.views):
+            self._images.select(selected, None)
+        self._look()
+        self._press_when_asked()
+
+    def _fail(self, error: PoursightError) -> None:
+        self._is_pressed = False
+        self.desk.told.emit(str(error))
+
+    def _show_cell(self) -> None:
+        settings = self.desk.cell.settings
+        self.side.choice.show_cell(settings)
+        if settings is not None:
+            self.desk.background.run("cell in 3D", partial(picture_cell, settings), self.left.view.show_cell)
+
+    # What the arm does now
+
+    def _hear(self, news: object) -> None:
+        if not self._work.is_scanning:
+            return
+        if isinstance(news, ViewsPlanned):
+            self._can_pause = True
+            self._views.plan(news)
+            self._show_views()
+        elif isinstance(news, ViewDone):
+            self._show_done(news)
+        elif isinstance(news, MeshGrown):
+            prepare = partial(prepare_mesh, news.vertices_m, news.faces)
+            self.desk.background.run("growing mesh", prepare, self._show_growing)
+        else:
+            return
+        self._look()
+
+    def _show_done(self, news: ViewDone) -> None:
+        index = self._views.done(news)
+        if index is None:
+            return
+        self._images.newest(index, news)
+        self.left.grid.set_item(index, self._views.thumbnail(index))
+        self._show_frusta()
+
+    def _show_growing(self, mesh: PreparedMesh) -> None:
+        if self._work.is_scanning:
+            self._grown = mesh
+            self.left.view.show_mesh(mesh)
+
+    def _show_arm(self) -> None:
+        status, is_there = self.desk.arm.status, self.desk.arm.connected is not None
+        state = status.state if status is not None else None
+        if state is not None or not is_there:
+            self.left.view.bend(None if state is None else state.joints_rad)
+        if is_there is not self._has_arm:
+            self._has_arm = is_there
+            self._look()
+
+    def _job_ended(self) -> None:
+        self._is_paused = False
+        self._look()
+
+    def _show_views(self) -> None:
+        self.left.grid.set_items(self._views.thumbnails())
+        self.left.make_room()
+        self._show_frusta()
+
+    def _show_frusta(self) -> None:
+        self.left.view.show_views(self._views.views, self._images.selected)
+
+    # What the user does
+
+    @override
+    def press_primary(self) -> None:
+        if self._work.is_scanning:
+            return
+        self._is_pressed = True
+        self._press_when_asked()
+
+    def scan(self, source: str) -> None:
+        """Choose what stands in the simulated cell and scan it, as soon as the page is ready."""
+        self.side.choice.choose(source)
+        self.press_primary()
+
+    def _press_when_asked(self) -> None:
+        if self._is_pressed and self._contents is not None and self.desk.cell.settings is not None:
+            self._is_pressed = False
+            super().press_primary()
+
+    def _press(self) -> None:
+        now = self._situation()
+        if not now.is_scanning:
+            self._scan(ScanWishes(restart=now.is_same and not now.can_continue))
+            return
+        self._is_paused = not self._is_paused
+        if self._is_paused:
+            self._work.pause()
+        else:
+            self._work.resume()
+        self._look()
+
+    def _scan(self, wishes: ScanWishes) -> None:
+        """Scan in the open session if it may hold this scan, otherwise in a new one."""
+        now = self._situation()
+        source = self.side.choice.source
+        if self.desk.workspace.session is None or now.needs_new_session:
+            wishes = ScanWishes()
+            if not self.desk.new_session(_REAL_CELL_NAME if source is None else Path(source).stem):
+                return
+        if not (wishes.retake or wishes.adaptive or now.can_continue):
+            self.left.view.show_alone(None)
+            self.left.view.show_mesh(None)
+        self._proposal = None
+        self._can_pause = self._is_paused = False
+        self._images.forget()
+        self._follow()
+        self._work.scan(source, wishes)
+        self.side.choice.forget_clearance()
+        self._look()
+
+    def _take_selected(self) -> None:
+        selected = self._images.selected
+        if selected is not None:
+            self._scan(ScanWishes(retake=(self._views.views[selected].name,)))
+
+    def _act(self) -> None:
+        deed = verdict_of(self._situation()).deed
+        if deed is Deed.JUDGE:
+            self._work.judge()
+        elif deed is Deed.PROPOSE:
+            self._work.propose()
+        elif deed is Deed.TAKE_MORE:
+            self._scan(ScanWishes(adaptive=True))
+        elif deed is Deed.TAKE_POOR:
+            self._scan(ScanWishes(retake=tuple(self._views.poor)))
+
+    def _is_empty(self) -> bool:
+        """Whether the open session holds nothing yet."""
+        contents = self._contents
+        return self._folder is not None and contents is not None and contents.source == "nothing"
+
+    def _take_proposal(self, proposal: Proposal) -> None:
+        self._proposal = proposal
+        self._look()
+
+    def _select(self, index: int) -> None:
+        self._images.select(index, self._work.frames_in_progress)
+        self.left.grid.select(index)
+        self._show_frusta()
+        self._look()
+
+    def _follow(self) -> None:
+        self._images.follow()
+        self.left.grid.select(None)
+        self._show_frusta()
+        self._look()
+
+    # How things stand
+
+    def _situation(self) -> Situation:
+        desk = self.desk
+        running, connected = desk.jobs.running, desk.arm.connected
+        return Situation(
+            contents=self._contents,
+            views=self._views,
+            source=self.side.choice.source,
+            is_ready=self.side.choice.is_ready,
+            is_idle=desk.jobs.is_idle,
+            is_scanning=self._work.is_scanning,
+            can_pause=self._can_pause,
+            is_paused=self._is_paused,
+            is_judging=running is not None and running.page == self.KEY,
+            is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
+            is_stale=desk.workspace.stages.get("quality") is Freshness.STALE,
+            is_simulated=desk.cell.is_simulated,
+            proposal=self._proposal,
+        )
+
+    def _look(self) -> None:
+        """Show what may be done, and what is said."""
+        now, side = self._situation(), self.side
+        verdict = verdict_of(now)
+        self.left.verdict.say(verdict.state, verdict.headline, verdict.details, verdict.action)
+        can_act = now.is_idle and (verdict.deed is Deed.JUDGE or now.can_scan)
+        self._offer(self.left.verdict.action, verdict.deed is not Deed.NOTHING, can_act)
+        self._offer(side.start_anew, now.can_continue and not now.is_scanning, now.can_scan)
+        is_scan = now.contents is not None and now.contents.source == "scan"
+        self._offer(side.take_again, is_scan and now.is_same, now.can_take_again and self._has_selected)
+        self._offer(side.follow, now.is_scanning and self._has_selected)
+        self._offer(side.import_folder, True, now.is_idle)
+        self._offer(side.import_mesh, True, now.is_idle)
+        side.primary.setText(now.primary_text)
+        self._offer(side.primary, True, now.can_pause if now.is_scanning else now.can_scan)
+        if self.hasFocus() and side.primary.isEnabled():
+            side.primary.setFocus()
+        side.choice.setEnabled(now.is_idle)
+        side.show_camera(now.contents is None or now.contents.source != "mesh" or now.is_scanning)
+        side.remark(*remarks_of(now))
+
+    def _offer(self, button: QPushButton, is_shown: bool, is_enabled: bool = True) -> None:
+        """Show and enable a button; the focus of one that goes does not wander to some other control."""
+        if button.hasFocus() and not (is_shown and is_enabled):
+            self.setFocus()
+        button.setVisible(is_shown)
+        button.setEnabled(is_enabled)
+
+    @property
+    def _has_selected(self) -> bool:
+        return self._images.selected is not None

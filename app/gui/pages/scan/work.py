@@ -1,0 +1,136 @@
+"""What the Scan page starts, and what follows when it is done."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from app.gui.desk.desk import Desk
+from app.gui.desk.jobs import RunningJob
+from app.gui.pages.scan.loading import FRAMES, load_hidden_area
+from app.jobs.scan_work import ScanWork
+from app.jobs.session_work import SessionWork
+from app.scanning import IN_PROGRESS, ScanWishes
+
+HIDDEN_AREA_M2 = 2e-4
+"""Less than this of the inside is too little to look again for; the scan's verdict says the same."""
+_PATIENCE_REAL_S = 4.0
+"""A real arm comes to rest before its process may be ended."""
+
+
+class ScanJobs(QObject):
+    """Scans, imports and judges, each followed by what makes sense next.
+
+    Attributes:
+        proposed: the `Proposal` of further views.
+    """
+
+    proposed = Signal(object)
+
+    def __init__(self, desk: Desk, page: str, parent: QObject) -> None:
+        super().__init__(parent)
+        self._desk = desk
+        self._page = page
+        self._scan: RunningJob | None = None
+        self._folder: Path | None = None
+
+    @property
+    def is_scanning(self) -> bool:
+        """Whether the arm is taking views for the open session now."""
+        running = self._desk.jobs.running
+        return running is not None and running is self._scan and self._is_open
+
+    @property
+    def frames_in_progress(self) -> Path | None:
+        """Where the images of the scan under way are; none if there is no such scan."""
+        return self._folder / IN_PROGRESS / FRAMES if self._folder is not None and self.is_scanning else None
+
+    def scan(self, source: str | None, wishes: ScanWishes) -> None:
+        """Scan, then judge what was taken; cell and session must be there."""
+        desk = self._desk
+        cell = desk.cell.settings
+        assert cell is not None, "the button is disabled before the cell is read"
+        if not desk.jobs.is_idle:
+            return
+        desk.scan_host.order(ScanWork.get_ready)
+        self._start(
+            self.tr("Scan"),
+            ScanWork.scan,
+            cell,
+            source,
+            wishes,
+            then=self._judge_scan,
+            patience_s=1.0 if desk.cell.is_simulated else _PATIENCE_REAL_S,
+        )
+        self._scan = desk.jobs.running
+        if self._scan is not None:
+            self._scan.start_again = partial(self._scan_again, source, wishes)
+
+    def judge(self) -> None:
+        """Reconstruct and judge the scan, and say where to look again."""
+        self._start(self.tr("Judge the scan"), SessionWork.reconstruct, then=self._look_again)
+
+    def propose(self) -> None:
+        """Find views that show what is hidden."""
+        cell = self._desk.cell.settings
+        if cell is not None:
+            self._start(self.tr("Look where to look again"), ScanWork.propose, cell, then=self.proposed.emit)
+
+    def import_scan(self, folder: Path) -> None:
+        """Take over a folder of views; the import judges them."""
+        self._start(self.tr("Import the scan"), SessionWork.import_scan, folder)
+
+    def import_mesh(self, path: Path) -> None:
+        """Take over a mesh."""
+        self._start(self.tr("Import the mesh"), SessionWork.import_mesh, path)
+
+    def pause(self) -> None:
+        """Let the arm stand after the view it is at."""
+        self._desk.scan_host.order(ScanWork.pause)
+
+    def resume(self) -> None:
+        """Go on."""
+        self._desk.scan_host.order(ScanWork.resume)
+
+    @property
+    def _is_open(self) -> bool:
+        """Whether the session that was worked on is still the open one."""
+        return self._folder is not None and self._folder == self._desk.workspace.folder
+
+    def _start(
+        self,
+        title: str,
+        method: Callable[..., object],
+        *arguments: object,
+        then: Callable[[object], None] | None = None,
+        patience_s: float = 1.0,
+    ) -> None:
+        desk = self._desk
+        host = desk.scan_host if method in (ScanWork.scan, ScanWork.propose) else desk.session_host
+        task = desk.workspace.task()
+        self._folder = task.folder
+        desk.jobs.start(title, self._page, host, method, task, *arguments, then=then, patience_s=patience_s)
+
+    def _scan_again(self, source: str | None, wishes: ScanWishes) -> None:
+        """After a failure: what was taken since the scan began is kept."""
+        has_kept = self._folder is not None and (self._folder / IN_PROGRESS).exists()
+        self.scan(source, replace(wishes, restart=wishes.restart and not has_kept))
+
+    def _judge_scan(self, _result: object) -> None:
+        if self._is_open:
+            self.judge()
+
+    def _look_again(self, _result: object) -> None:
+        session = self._desk.workspace.session
+        if session is not None and self._is_open:
+            self._desk.background.run(
+                "hidden in the scan", partial(load_hidden_area, session), self._propose_if_hidden
+            )
+
+    def _propose_if_hidden(self, area_m2: float) -> None:
+        if area_m2 > HIDDEN_AREA_M2 and self._is_open and self._desk.jobs.is_idle:
+            self.propose()

@@ -1,0 +1,1 @@
+"""How well the imagination judges objects whose answer is known (Sec. IV-B, V-A)."""

@@ -1,0 +1,41 @@
+"""Judging one object's containability in a worker; what goes wrong with it becomes part of its verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from time import perf_counter
+
+from core.collision.build import read_collision_model
+from core.errors import Cancelled, PoursightError
+from core.evaluation.labels import LabelledObject
+from core.evaluation.verdicts import ObjectVerdict, mesh_mark
+from core.imagination.imagine import imagine_containability
+from core.parameters import Parameters
+from core.workers import Task, WorkerReporter
+
+
+def judging_task(one: LabelledObject, parameters: Parameters, file: Path) -> Task:
+    """Return the task that judges an object and writes its `ObjectVerdict` to a file."""
+    return Task(judge_object, (one, parameters, file))
+
+
+def judge_object(one: LabelledObject, parameters: Parameters, file: Path) -> None:
+    """Judge an object and write its verdict.
+
+    Raises:
+        Cancelled: somebody asked to stop; nothing is written.
+    """
+    began_s = perf_counter()
+    n_drop, n_in, problem = 0, 0, ""
+    try:
+        model = read_collision_model(one.mesh, parameters.collision, WorkerReporter())
+        found = imagine_containability(model, parameters)
+        n_drop, n_in = found.n_drop, found.n_in
+    except Cancelled:
+        raise
+    except PoursightError as error:
+        problem = str(error)
+    except Exception as error:  # one object must not end the run of all others
+        problem = f"A fault of the program ended this ({type(error).__name__}: {error})."
+    seconds = round(perf_counter() - began_s, 3)
+    ObjectVerdict(one.name, mesh_mark(one.mesh), n_drop, n_in, seconds, problem).save(file)

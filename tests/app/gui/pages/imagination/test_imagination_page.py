@@ -1,0 +1,161 @@
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QLabel, QPushButton
+
+from app.gui.pages.imagination.page import ImaginationPage
+from app.jobs.render_news import PictureDrawn
+from core.parameters import apply_settings
+
+
+@pytest.fixture
+def page(qtbot, desk):
+    page = ImaginationPage(desk)
+    qtbot.addWidget(page)
+    page.resize(1060, 640)
+    page.show()
+    return page
+
+
+@pytest.fixture
+def opened(page, desk, qtbot):
+    def open_session(folder):
+        desk.workspace.open(folder)
+        qtbot.waitUntil(lambda: page.drop is not None, timeout=10_000)
+        return page
+
+    return open_session
+
+
+def text(page, name):
+    return page.findChild(QLabel, name).text().replace("\u00a0", " ")
+
+
+def primary(page):
+    return page.findChild(QPushButton, "primary")
+
+
+def change(desk, **settings):
+    named = {name.replace("__", "."): value for name, value in settings.items()}
+    desk.workspace.edit(apply_settings(desk.workspace.parameters, named), "change")
+
+
+def test_without_a_model_it_says_what_will_be_here_and_leads_to_the_scan(page, desk, qtbot):
+    assert "candies are dropped" in text(page, "drop_verdict")
+    assert not primary(page).isEnabled()
+    assert page.side.parameters.editor.isEnabled()
+    with qtbot.waitSignal(desk.page_wanted) as wanted:
+        page.findChild(QPushButton, "drop_empty_button").click()
+    assert wanted.args == ["scan"]
+
+
+def test_a_container_is_told_with_its_reason_its_seed_and_its_footprint(opened, mug_session):
+    page = opened(mug_session)
+    found = page.drop.containability
+    verdict = text(page, "drop_verdict")
+    assert verdict.startswith(f"Open container: {found.n_in} of {found.n_drop} candies stayed")
+    assert text(page, "drop_reason") == (
+        f"More than 0 % of the candies have to stay inside; {100 * found.omega:.0f} % did."
+    )
+    assert page.side.omega.omega == found.omega
+    assert f"{found.n_in} of {found.n_drop}" in page.side.footprint.accessibleDescription()
+    facts = {fact.title: fact.value for fact in page.side.facts.facts}
+    assert facts["Seed"] == "0"
+    assert facts["Still in it"].endswith(str(found.n_in))
+    assert f"{found.n_in} kept" in text(page, "drop_legend")
+
+
+def test_a_block_is_told_why_it_is_no_container(opened, block_session):
+    page = opened(block_session)
+    assert text(page, "drop_verdict").startswith("Not an open container: 0 of")
+    assert "not one of the" in text(page, "drop_reason")
+    assert "lie on top" in text(page, "drop_reason")
+
+
+def test_the_drop_is_replayed_with_its_phases(opened, mug_session):
+    page = opened(mug_session)
+    timeline, drop = page.replay.timeline, page.drop
+    assert timeline.time_s == pytest.approx(drop.moments.duration_s)
+    assert text(page, "drop_now") == "End"
+    for phase, words in zip(
+        drop.phases, ("fall and settle", "3° about x", "3° about y", "Shoved along +x"), strict=True
+    ):
+        timeline.set_time(phase.begin_s + 0.05)
+        assert words in text(page, "drop_now")
+    shown = page.replay.scene._candies["candies"]._target.centers_m
+    np.testing.assert_allclose(shown, drop.moments.positions_m(timeline.time_s))
+
+
+def test_the_result_is_stale_when_a_parameter_changed_and_fresh_after_undo(opened, mug_session, desk):
+    page = opened(mug_session)
+    assert not primary(page).isEnabled()
+    change(desk, containability__drop_s=1.0)
+    assert primary(page).isEnabled()
+    assert page.side.stale.text == "This is from before you changed “Drop”: press Imagine."
+    assert not page.pictures.button.isEnabled()
+    desk.workspace.undo_stack.undo()
+    assert page.side.stale.text == ""
+    assert page.pictures.button.isEnabled()
+
+
+def test_footprint_and_parameters_share_a_place_and_the_button_tells_what_differs(opened, mug_session, desk):
+    page = opened(mug_session)
+    assert page.side.footprint.isVisible()
+    button = page.findChild(QPushButton, "side_page_parameters")
+    assert button.text() == "Parameters (2 differ)"  # the quick session's n_max and n_packings
+    button.click()
+    assert page.side.parameters.isVisible()
+    assert not page.side.footprint.isVisible()
+    page.side.parameters.editor.set_value("seed", 7)
+    assert desk.workspace.parameters.seed == 7
+    assert button.text() == "Parameters (3 differ)"
+
+
+def test_news_of_another_session_is_not_shown(opened, mug_session, desk, tmp_path):
+    page = opened(mug_session)
+    desk.jobs.news.emit(PictureDrawn(tmp_path / "another", tmp_path / "drop_1_start.png"))
+    assert page.pictures.strip.pictures == ()
+
+
+def test_a_damaged_drop_is_explained_on_the_page(page, desk, mug_session, qtbot):
+    (mug_session / "containability" / "drop.npz").write_bytes(b"")
+    desk.workspace.open(mug_session)
+    failed = page.findChild(QLabel, "drop_failed")
+    qtbot.waitUntil(failed.isVisible, timeout=10_000)
+    assert "drop.npz" in failed.text()
+    change(desk, seed=3)  # it stays explained
+    assert failed.isVisible()
+    assert text(page, "drop_verdict") == "The drop cannot be shown"
+
+
+def test_another_session_leaves_nothing_of_the_one_before(opened, mug_session, desk, tmp_path):
+    page = opened(mug_session)
+    desk.workspace.open(tmp_path / "new")
+    assert page.drop is None
+    assert page.replay.scene.layers() == ()
+    assert page.replay.timeline.duration_s == 0
+    assert "candies are dropped" in text(page, "drop_verdict")
+
+
+def test_imagined_with_a_high_threshold_a_mug_is_none_and_its_pictures_fill_the_strip(
+    opened, mug_session, desk, qtbot
+):
+    page = opened(mug_session)
+    former = page.drop
+    change(desk, containability__omega_threshold=0.9, evidence__films=False)
+    primary(page).click()
+    assert not primary(page).isEnabled()
+    qtbot.waitUntil(lambda: page.drop is not former and desk.jobs.is_idle, timeout=60_000)
+    assert text(page, "drop_verdict").startswith("Not an open container")
+    assert "More than 90 % of the candies have to stay inside; only" in text(page, "drop_reason")
+    seen = []
+    desk.jobs.news.connect(
+        lambda _: seen.append(sum(picture.path is not None for picture in page.pictures.strip.pictures))
+    )
+    page.pictures.button.click()
+    assert page.pictures.strip.pictures[0].caption == "Start"
+    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=60_000)
+    assert seen == [1, 2, 3, 4, 5, 6]
+    paths = [picture.path for picture in page.pictures.strip.pictures]
+    assert [path.name for path in paths if path.parent.name == "evidence"] == [path.name for path in paths]
+    assert all(path.is_file() for path in paths)
+    assert not page.pictures.button.isVisible()

@@ -1,0 +1,213 @@
+"""From connecting to the outcome, and back after a stop, by clicks alone; with the simulated controller."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from dataclasses import replace
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QCheckBox, QLabel
+
+from app.gui.pages.robot.steps import Doing, Step
+from core.session.pour_runs import pour_runs
+
+pytest.importorskip("rtde_control")
+
+CHECKS = ("check_cup", "check_area", "check_speed", "check_stop")
+
+
+@pytest.fixture
+def reach(page, qtbot):
+    """Waits until a step is reached and nothing is under way."""
+
+    def reach_(step, timeout=40_000):
+        def is_there():
+            return page.course.step is step and page.desk.jobs.is_idle and page.desk.background.is_idle
+
+        qtbot.waitUntil(is_there, timeout=timeout)
+
+    return reach_
+
+
+@pytest.fixture
+def ready(page, open_session, mug_session, reach):
+    """Connected, with the mug's session open."""
+    open_session(mug_session)
+    page.side.primary.click()
+    reach(Step.PLAN)
+    return page
+
+
+def hold(qtbot, button):
+    """Press a button until it is confirmed."""
+    qtbot.mousePress(button, Qt.MouseButton.LeftButton)
+    with qtbot.waitSignal(button.confirmed, timeout=5000):
+        pass
+    qtbot.mouseRelease(button, Qt.MouseButton.LeftButton)
+
+
+def tick_all(page):
+    for name in CHECKS:
+        page.findChild(QCheckBox, name).setChecked(True)
+
+
+def pour_until(page, qtbot, reach, move):
+    """Plan, confirm, and return when a move is well under way."""
+    page.side.primary.click()
+    reach(Step.CHECK)
+    tick_all(page)
+    hold(qtbot, page.side.hold_to_pour)
+    with qtbot.waitSignal(
+        page.course.moved,
+        timeout=30_000,
+        check_params_cb=lambda told: told.name == move and told.fraction > 0.2,
+    ):
+        pass
+
+
+def text(page, name):
+    return page.findChild(QLabel, name).text()
+
+
+def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
+    page, side = ready, ready.side
+    assert "running" in [label.text() for label in side.state.findChildren(QLabel)]
+    side.primary.click()
+    reach(Step.CHECK)
+
+    planned = page.course.planned
+    motion = page.course.motion
+    assert page.view.timeline.duration_s == pytest.approx(planned.plan.duration_s)
+    page.view.timeline.set_time(motion.begins_s[6] + 0.1)
+    assert text(page, "plan_now") == "pour: the cup turns about its rim and pours"
+    assert {"way", "pivot"} <= set(page.view.scene.layers())
+    free = f"{1000 * planned.plan.clearance_m:.0f} mm between {planned.plan.nearest[0]} and"
+    assert any(free in label.text() for label in side.check.findChildren(QLabel))
+
+    button = side.hold_to_pour
+    assert not button.isEnabled()
+    assert "Tick each point" in text(page, "hold_reason")
+    tick_all(page)
+    assert button.isEnabled()
+    page.course.planned = replace(planned, expires_s=0.0)
+    page._guide.look()
+    assert not button.isEnabled()
+    assert "plan again" in text(page, "hold_reason")
+    page.course.planned = planned
+    page._guide.look()
+
+    qtbot.mousePress(button, Qt.MouseButton.LeftButton)
+    qtbot.wait(300)
+    qtbot.mouseRelease(button, Qt.MouseButton.LeftButton)
+    qtbot.wait(100)
+    assert page.course.step is Step.CHECK, "released too early"
+    assert not pour_runs(mug_session)
+
+    hold(qtbot, button)
+    assert page.course.step is Step.POUR
+    assert not button.isVisibleTo(page)
+    with qtbot.waitSignal(
+        page.course.moved, timeout=20_000, check_params_cb=lambda told: told.name == "pour"
+    ):
+        pass
+    assert text(page, "live_move") == "pour: the cup turns about its rim and pours"
+    assert "Move 7 of 14" in text(page, "live_left")
+    assert not page.view.timeline.isEnabled()
+    reach(Step.OUTCOME)
+
+    (run,) = pour_runs(mug_session)
+    assert run.is_done
+    assert run.outcome.is_simulated
+    assert text(page, "spilled") == str(run.outcome.n_spilled)
+    assert "SIMULATED" in text(page, "outcome_how")
+    side.outcome.findChild(object, "spilled_more").click()
+    side.primary.click()
+    reach(Step.PLAN)
+    kept = json.loads((run.folder / "outcome.json").read_text())
+    assert (kept["n_spilled"], kept["is_simulated"]) == (run.outcome.n_spilled + 1, False)
+    assert [row.values[2] for row in side.runs.table.rows] == ["poured"]
+
+    side.runs.chosen.emit(run.folder)
+    assert page.course.step is Step.OUTCOME
+    assert "As it was entered" in text(page, "outcome_how")
+    side.again.click()
+    reach(Step.CHECK)
+    assert not any(page.findChild(QCheckBox, name).isChecked() for name in CHECKS)
+
+
+def test_after_a_stop_the_guide_leads_back_to_a_new_plan(ready, qtbot, reach, mug_session):
+    page, side = ready, ready.side
+    pour_until(page, qtbot, reach, "carry")
+    with qtbot.waitSignal(page.desk.arm.stopped, timeout=3000) as stopped:
+        page.desk.arm.stop()
+    print(f"STOP was taken after {1000 * stopped.args[0].seconds:.1f} ms")
+    assert stopped.args[0].seconds < 0.1
+    reach(Step.STOPPED)
+    assert "Stopped on request" in text(page, "recovery_what")
+    assert side.primary.text() == "Make the arm ready"
+    assert not side.hold_to_pour.isVisibleTo(page)
+    joints_rad = page.desk.arm.status.state.joints_rad.copy()
+
+    side.primary.click()
+    reach(Step.WAY_BACK)
+    assert abs(page.desk.arm.status.state.joints_rad - joints_rad).max() < 1e-3, "it has not moved"
+    assert side.primary.text() == "Show the way back"
+    side.primary.click()
+    reach(Step.BACK)
+    assert [move.name for move in page.course.motion.moves][-1] == "home"
+    assert page.view.timeline.duration_s > 1
+    hold(qtbot, side.hold_to_back_off)
+    assert page.course.step is Step.BACKING
+    reach(Step.PLAN)
+    assert "See that the cup stands at its station" in text(page, "start_note")
+    assert [row.values[2] for row in side.runs.table.rows] == ["backed off", "stopped"]
+    side.primary.click()
+    reach(Step.CHECK)
+
+
+def test_a_killed_process_is_told_and_connecting_again_works(ready, qtbot, reach, mug_session):
+    page = ready
+    pour_until(page, qtbot, reach, "lay")
+    os.kill(page.desk.arm_host.pid, signal.SIGKILL)
+    reach(Step.CONNECT)
+    assert "ended unexpectedly" in text(page, "start_note")
+    assert not page.side.state.isVisibleTo(page)
+    assert "Not connected" in text(page, "arm_caption")
+    page.side.primary.click()
+    reach(Step.PLAN)
+    assert text(page, "start_note") == ""
+    (run,) = pour_runs(mug_session)
+    assert "ended while the arm moved" in run.sentence
+
+
+def test_at_rest_stop_gripper_and_another_cell(ready, qtbot, reach):
+    page, side = ready, ready.side
+    page.desk.arm.stop()
+    reach(Step.STOPPED)
+    assert not side.findChild(object, "guide_3").isVisibleTo(page), "nothing has to come back"
+    side.primary.click()
+    reach(Step.PLAN)
+
+    side.findChild(object, "gripper_by_hand").click()
+    button = side.findChild(object, "hold_gripper")
+    assert button.text() == "Hold to close the gripper"
+    hold(qtbot, button)
+    qtbot.waitUntil(lambda: button.text() == "Hold to open the gripper", timeout=5000)
+    reach(Step.PLAN)
+    qtbot.waitUntil(lambda: "The gripper is closed" in text(page, "start_note"), timeout=3000)
+    side.primary.click()
+    qtbot.waitUntil(lambda: page.course.doing is Doing.NOTHING, timeout=20_000)
+    assert "open the gripper" in text(page, "start_failure")
+    hold(qtbot, button)
+    qtbot.waitUntil(lambda: text(page, "start_note") == "", timeout=5000)
+
+    page.desk.cell.choose(None)
+    qtbot.waitUntil(lambda: page.course.step is Step.CONNECT, timeout=5000)
+    side.primary.click()
+    reach(Step.PLAN)
+    side.findChild(object, "disconnect").click()
+    reach(Step.CONNECT)
+    assert text(page, "start_note") == ""

@@ -1,0 +1,91 @@
+"""Pictures of every page, light and dark, small and large, with a container and with something that is none.
+
+Run by `make screenshots`: the sessions are made by the real pipeline, the window is real, on a virtual screen.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from pathlib import Path
+
+from PIL import Image
+from PySide6.QtCore import QSettings
+from PySide6.QtTest import QTest
+
+from app.gui.main import make_application, open_window
+from app.gui.pages.registry import OTHERS, WORK
+from app.gui.walk import Walk
+from app.library.places import SESSIONS_VARIABLE
+from tests.app.gui.sessions import make_poured_session, make_session
+
+SIZES = ((1280, 800), (1920, 1080))
+THEMES = ("light", "dark")
+OBJECTS = {"mug": make_poured_session, "block": make_session}
+_COLORS = 200
+"""Enough for a screenshot; a third of the bytes."""
+_SETTLING_MS = 1200
+
+
+def main() -> None:
+    """Write `<object>-<page>-<theme>-<width>.png` into the folder given."""
+    target = Path(sys.argv[1])
+    target.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as home:
+        os.environ["XDG_CONFIG_HOME"] = os.environ["XDG_DATA_HOME"] = home
+        library = Path(home) / "sessions"
+        os.environ[SESSIONS_VARIABLE] = str(library)
+        for name, make in OBJECTS.items():
+            make(library / name, name)
+            print(f"session '{name}' made", flush=True)
+        make_application()
+        for theme in THEMES:
+            for size in SIZES:
+                _picture(target, library, theme, size)
+
+
+def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> None:
+    """All pages of all sessions in one window."""
+    application = make_application()
+    QSettings().setValue("theme", theme)
+    window = open_window(application)
+    window.resize(*size)
+    walk = Walk(window)
+    ready: list[bool] = []
+    window.ready.connect(lambda: ready.append(True))
+    walk.wait(lambda: ready, "the window is ready", 60)
+    _keep(walk, target / f"welcome-{theme}-{size[0]}.png")
+    for name in OBJECTS:
+        window.desk.open_session(library / name)
+        for key in (*WORK, *OTHERS):
+            window.show_page(key)
+            if key == "robot" and window.desk.workspace.is_container:
+                _plan(walk)
+            _keep(walk, target / f"{name}-{key}-{theme}-{size[0]}.png")
+        window.desk.workspace.close()
+    window.close_without_asking()
+
+
+def _plan(walk: Walk) -> None:
+    """Connect the simulated arm and plan, so that there is something to see."""
+    for what in ("connect", "plan"):
+        walk.window.page("robot").press_primary()
+        QTest.qWait(200)
+        walk.wait_for_work(what, 60)
+
+
+def _keep(walk: Walk, path: Path) -> None:
+    QTest.qWait(300)
+    walk.wait(lambda: walk.window.desk.background.is_idle, "the page is loaded", 60)
+    walk.wait_for_work("the page's work", 60)
+    QTest.qWait(_SETTLING_MS)
+    walk.window.grab().save(str(path))
+    with Image.open(path) as picture:
+        small = picture.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
+    small.save(path, optimize=True)
+    print(path.name, flush=True)
+
+
+if __name__ == "__main__":
+    main()
