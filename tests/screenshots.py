@@ -1,6 +1,6 @@
 """Pictures of every page, light and dark, small and large, with a container and with something that is none.
 
-Run by `make screenshots`: the sessions are made by the real pipeline, the window is real, on a virtual screen.
+Run by `make screenshots`: the sessions are made by the real pipeline, in a real window on a virtual screen.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from app.gui.main import make_application, open_window
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.walk import Walk
 from app.library.places import SESSIONS_VARIABLE
-from tests.app.gui.sessions import make_poured_session, make_session
+from tests.app.sessions import make_poured_session, make_session
 
 SIZES = ((1280, 800), (1920, 1080))
 THEMES = ("light", "dark")

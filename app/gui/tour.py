@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
+from PySide6.QtWidgets import QWidget
+
 from app.gui.walk import Walk, WalkEnded
 from core.session.pour_runs import PourRun, pour_runs
 
@@ -66,12 +68,9 @@ class Tour:
     def _plan(self) -> None:
         self._walk.click("next")
         self._walk.wait(lambda: self._walk.window.shown == "robot", "the arm is shown", 5)
-        for what in ("the arm is connected", "the pour is planned"):
-            self._walk.click("primary")
-            self._walk.wait_for_work(what, ARM_S)
+        self._walk.wait(lambda: self._walk.shown(QWidget, "hold_to_pour"), "the pour is planned", ARM_S)
 
     def _pour(self) -> None:
-        self._walk.tick_all(self._walk.window.page("robot"))
         self._walk.hold("hold_to_pour", HOLD_S)
         self._walk.wait_for_work("the mug is poured into", POUR_S)
         self._walk.click("primary", within_s=30)

@@ -6,9 +6,9 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QCheckBox, QWidget
+from PySide6.QtWidgets import QAbstractButton, QWidget
 
 from app.gui.window import MainWindow
 from core.errors import StageError
@@ -63,13 +63,6 @@ class Walk:
         assert button is not None, "waited for"
         self.clicks += 1
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
-
-    def tick_all(self, within: QWidget) -> None:
-        """Tick every box in a part of the window."""
-        for box in within.findChildren(QCheckBox):
-            if box.isVisibleTo(self.window) and box.isEnabled() and not box.isChecked():
-                self.clicks += 1
-                QTest.mouseClick(box, Qt.MouseButton.LeftButton, pos=QPoint(10, box.height() // 2))
 
     def hold(self, name: str, seconds: float) -> None:
         """Press a button, hold it, and let it go."""

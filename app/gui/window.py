@@ -25,6 +25,7 @@ from app.gui.pages.page import Page, SplitView
 from app.gui.pages.registry import OTHERS, WORK, make_page, tab_facts
 from app.gui.pages.welcome.page import WelcomePage
 from app.gui.warming import Warming
+from app.jobs.arm_news import StopDone
 from app.jobs.messages import Failed, FailureKind
 from app.library.index import Library
 from app.library.places import sessions_folder
@@ -32,8 +33,11 @@ from app.library.places import sessions_folder
 SMALLEST_PX = (1100, 700)
 USUAL_PX = (1280, 800)
 MUG = "mug"
-STARTED_BY_NEXT = ("scan", "reconstruction", "imagination")
-"""Pages whose work begins with the click on "Next"; nothing that moves a real arm does."""
+BREATH_MS = 30
+STARTED_BY_NEXT = ("scan", "reconstruction", "imagination", "robot")
+"""Pages whose work begins with the click on "Next"."""
+ARM_PAGES = ("scan", "robot")
+"""Not so those whose work is with an arm, when that is a real one."""
 
 
 class MainWindow(QMainWindow):
@@ -70,8 +74,17 @@ class MainWindow(QMainWindow):
     def begin(self) -> None:
         """Start what takes its time; the window is on the screen by now."""
         self.desk.prepare()
-        self._warming.done.connect(self.ready)
+        self._warming.done.connect(self._make_pages)
         self._warming.start()
+
+    def _make_pages(self) -> None:
+        """Make the pages one by one, so that no click has to wait for one; then all is ready."""
+        missing = [key for key in (*WORK, *OTHERS) if key not in self._pages]
+        if not missing:
+            self.ready.emit()
+            return
+        self.page(missing[0])
+        QTimer.singleShot(BREATH_MS, self, self._make_pages)
 
     @property
     def shown(self) -> str:
@@ -99,7 +112,7 @@ class MainWindow(QMainWindow):
     def go_on(self, key: str) -> None:
         """Show a page and, where that moves nothing real, press its button."""
         self.show_page(key)
-        if key in STARTED_BY_NEXT and (key != "scan" or self.desk.cell.is_simulated):
+        if key in STARTED_BY_NEXT and (key not in ARM_PAGES or self.desk.cell.is_simulated):
             self.page(key).press_primary()
 
     def scan_the_mug(self) -> None:
@@ -200,6 +213,7 @@ class MainWindow(QMainWindow):
         self.job_bar.log_wanted.connect(self.log.setVisible)
         self.job_bar.next_wanted.connect(self.go_on)
         self.top_bar.stop.pressed.connect(self.stop)
+        desk.arm.stopped.connect(self._on_stopped)
         self.welcome.mug_wanted.connect(self.scan_the_mug)
 
     def stop(self) -> None:
@@ -209,6 +223,12 @@ class MainWindow(QMainWindow):
         job = self.desk.jobs.running
         if job is not None and job.host is not self.desk.session_host:
             self.desk.jobs.cancel()
+
+    def _on_stopped(self, done: StopDone) -> None:
+        if done.sentence:
+            self.messages.say(done.sentence, state="failed")
+        ms = round(1000 * done.seconds)
+        self.log.add(done.sentence or self.tr("The stop was taken after {ms} ms.").format(ms=ms))
 
     def _tell(self, sentence: str) -> None:
         self.messages.say(sentence)

@@ -34,6 +34,8 @@ class ArmWork(Service):
     a repeated nor a late call moves anything.
     """
 
+    GIVES_WAY = False
+
     def __init__(self, tell: Any) -> None:
         super().__init__(tell)
         self._held: HeldArm | None = None

@@ -19,6 +19,7 @@ from app.jobs.service import Service
 from core.errors import Cancelled, PoursightError
 
 _CLOSING_S = 2.0
+_NICENESS = 10
 
 
 def serve(kind: type[Service], connection: Connection) -> None:
@@ -56,6 +57,8 @@ class _Host:
                 message.method(self._service, *message.arguments)
 
     def _work(self) -> None:
+        if self._service.GIVES_WAY:
+            os.nice(_NICENESS)  # of this thread and of what it starts; the listening one stays quick
         self._service.prepare()
         while True:
             job = self._jobs.get()

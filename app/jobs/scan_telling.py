@@ -84,10 +84,10 @@ class ScanTelling:
             self.tell(ArmGone())
 
     def _watch(self, cell: Cell, ended: Event) -> None:
-        while True:
+        self.tell(_status(cell))
+        while not ended.wait(_STATUS_S):
             self.tell(_status(cell))
-            if ended.wait(_STATUS_S):
-                return
+        self.tell(_status(cell))  # how it was left
 
     def _pose(self, record: ViewRecord) -> FloatArray | None:
         """Where the camera will stand, by kinematics; nobody knows before a recorded scan is played."""

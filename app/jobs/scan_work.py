@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from threading import Event
 from typing import TYPE_CHECKING
 
+from app.jobs.arm_news import StopDone
 from app.jobs.face import JobFace
 from app.jobs.messages import News
 from app.jobs.scan_news import Proposal
@@ -43,6 +45,8 @@ class _Running:
 
 class ScanWork(Service):
     """Takes the views of an object."""
+
+    GIVES_WAY = False
 
     def __init__(self, tell: Callable[[News], None]) -> None:
         super().__init__(tell)
@@ -124,16 +128,19 @@ class ScanWork(Service):
             running.control.resume()
 
     def stop(self) -> None:
-        """Stop the arm, at once, and end the scan; one that was asked for but has not begun never will.
-
-        Raises:
-            RobotError: the arm cannot be told.
-        """
+        """Stop the arm, at once, and end the scan; one that was asked for but has not begun never will."""
+        began_s, said = time.monotonic(), ""
         self._was_stopped = True
-        if (running := self._running) is not None:
-            running.face.cancel()
-            if (robot := running.robot) is not None:
-                robot.stop()
+        if (running := self._running) is None:
+            return
+        running.face.cancel()  # first, for it takes no time, and the scan must not call the stop a fault
+        if (robot := running.robot) is None:
+            return
+        try:
+            robot.stop()
+        except PoursightError as error:
+            said = str(error)
+        self._tell(News(StopDone(time.monotonic() - began_s, said)))
 
     @contextmanager
     def _under_way(self, face: JobFace) -> Iterator[_Running]:

@@ -13,7 +13,12 @@ class Service:
     Its public methods are jobs: `method(self, face, ...)`, called one after the other in one thread; or
     orders: `method(self, ...) -> None`, called at once in another, so they must be short and thread-safe.
     Its module imports nothing heavy at the top: the window's process imports it, too.
+
+    Attributes:
+        GIVES_WAY: whether the window goes before its work on a busy machine; not where something moves.
     """
+
+    GIVES_WAY = True
 
     def __init__(self, tell: Callable[[News], None]) -> None:
         """`tell` sends news outside of a job; safe from any thread."""

@@ -55,3 +55,34 @@ def scan_folder(tmp_path):
         Image.fromarray(depth).save(rgbd / f"frame-{index:06d}.depth.png")
         np.savetxt(rgbd / f"frame-{index:06d}.pose.txt", look_at(eye, [-0.06, -0.35, 0.05]))
     return folder
+
+
+@pytest.fixture(scope="session")
+def made_sessions(tmp_path_factory):
+    """A container (mug) and something that is none (block), each made when first asked for."""
+    from tests.app.sessions import make_session
+
+    made = {}
+
+    def make(name):
+        if name not in made:
+            made[name] = make_session(tmp_path_factory.mktemp(name) / name, name)
+        return made[name]
+
+    return make
+
+
+@pytest.fixture
+def mug_session(made_sessions, tmp_path):
+    """A session with a scanned, reconstructed and imagined mug."""
+    from tests.app.sessions import copied
+
+    return copied(made_sessions("mug"), tmp_path / "mug")
+
+
+@pytest.fixture
+def block_session(made_sessions, tmp_path):
+    """The same with a block, which is no container."""
+    from tests.app.sessions import copied
+
+    return copied(made_sessions("block"), tmp_path / "block")

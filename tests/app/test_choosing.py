@@ -21,7 +21,7 @@ from hardware.cell.scene import ARMS, motion_scene
 from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
 from hardware.robots.simulated_gripper import SimulatedGripper
-from tests.app.gui.sessions import make_session, quick_parameters
+from tests.app.sessions import make_session, quick_parameters
 
 WHY = "the handle is in the way"
 

@@ -23,21 +23,15 @@ from core.session.operator_choice import write_operator_choice
 from core.session.pour_runs import pour_runs
 from hardware.cell import read_cell
 from hardware.simulation.ur_controller.addresses import CONTROL_PORT
-from tests.app.gui.sessions import copied, make_session
 
 pytest.importorskip("rtde_control")
 
 NAMES = [name for name, *_ in MOVES]
 
 
-@pytest.fixture(scope="module")
-def made_mug(tmp_path_factory):
-    return make_session(tmp_path_factory.mktemp("mug") / "mug", "mug")
-
-
 @pytest.fixture
-def task(made_mug, tmp_path):
-    folder = copied(made_mug, tmp_path / "mug")
+def task(mug_session):
+    folder = mug_session
     preset, parameters = remembered_parameters(folder)
     return SessionTask(folder, parameters, preset)
 

@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from app.jobs.arm_news import ArmConnected, ArmGone, ArmStatus
+from app.jobs.arm_news import ArmConnected, ArmGone, ArmStatus, StopDone
 from app.jobs.host import Host
 from app.jobs.messages import Failed, FailureKind, Finished, News, Progressed, Warned
 from app.jobs.scan_news import MeshGrown, Proposal, ViewDone, ViewsPlanned
@@ -198,6 +198,9 @@ def test_stop_halts_the_arm_and_nothing_goes_on(scanning):
     assert scanning.end().kind is FailureKind.CANCELLED
     assert time.monotonic() - began_s < 1
     assert not is_moving([thing for thing in scanning.told if isinstance(thing, ArmStatus)][-1])
+    [done] = [thing for thing in scanning.told if isinstance(thing, StopDone)]
+    assert done.seconds < 0.1
+    assert done.sentence == ""
 
 
 def test_a_scan_that_stop_overtakes_never_begins(scanning):

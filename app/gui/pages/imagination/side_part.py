@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QLabel, QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.fact_grid import Fact, FactGrid
@@ -15,6 +15,7 @@ from app.gui.pages.parameters_part import ParametersPart, n_different
 from app.gui.pages.staleness import StaleNote
 from app.gui.theme import GRID_PX
 from app.gui.views.footprint import FootprintView
+from app.gui.views.labels import text_label
 from app.gui.views.omega_bar import OmegaBar
 from core.report.sentences import verdict_sentence
 
@@ -38,9 +39,9 @@ class VerdictSide(SidePanel):
     def __init__(self, desk: Desk) -> None:
         super().__init__(self.tr("Imagine"))
         self._sentences = Sentences(self)
-        self._verdict = self._label("drop_verdict", "verdict")
-        self._reason = self._label("drop_reason")
-        self._failed = self._label("drop_failed", "failed")
+        self._verdict = text_label("drop_verdict", "verdict")
+        self._reason = text_label("drop_reason")
+        self._failed = text_label("drop_failed", "failed")
         self._empty_button = QPushButton()
         self._empty_button.setObjectName("drop_empty_button")
         self._empty_button.clicked.connect(self.empty_wanted)
@@ -72,14 +73,6 @@ class VerdictSide(SidePanel):
         self._failed.hide()
         desk.workspace.parameters_changed.connect(self._count)
         self._count()
-
-    def _label(self, name: str, role: str = "") -> QLabel:
-        label = QLabel()
-        label.setObjectName(name)
-        label.setWordWrap(True)
-        if role:
-            label.setProperty("role", role)
-        return label
 
     def _make_result(self) -> QWidget:
         self.footprint = FootprintView()

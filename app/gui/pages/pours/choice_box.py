@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 
-from app.gui.pages.pours.labels import heading, rule, say, text_label
 from app.gui.pages.pours.results import ShownPours
 from app.gui.pages.pours.words import chosen_sentence, why_sentences
 from app.gui.pages.staleness import StaleNote
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import heading, rule, say, text_label
 
 
 class ChoiceBox(QWidget):

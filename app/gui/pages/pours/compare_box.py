@@ -18,9 +18,9 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.pages.pours.comparison import OtherPours, one_direction
-from app.gui.pages.pours.labels import heading, rule, say, text_label
 from app.gui.pages.pours.words import comparison_sentence
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import heading, rule, say, text_label
 from core.imagination.results import PourGrid
 
 NOTHING, FIXED, BEFORE, OTHER = range(4)

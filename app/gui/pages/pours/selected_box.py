@@ -5,10 +5,10 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QSizePolicy, QVBoxLayout, QWidget
 
-from app.gui.pages.pours.labels import heading, say, text_label
 from app.gui.pages.pours.results import ShownPours
 from app.gui.pages.pours.words import feasibility_sentence, selected_sentence
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import heading, say, text_label
 
 
 class SelectedBox(QWidget):

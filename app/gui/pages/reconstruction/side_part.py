@@ -7,7 +7,7 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QTimer, Signal
-from PySide6.QtWidgets import QLabel, QPushButton, QScrollArea
+from PySide6.QtWidgets import QPushButton, QScrollArea
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.fact_grid import Fact, FactGrid
@@ -18,6 +18,7 @@ from app.gui.pages.reconstruction.loading import MM, ShownModel
 from app.gui.pages.staleness import StaleNote
 from app.gui.theme import GRID_PX
 from app.gui.views.health_table import Column, FactTable, Row
+from app.gui.views.labels import text_label
 from core.geometry import FloatArray
 
 if TYPE_CHECKING:  # it brings the fusion along
@@ -37,17 +38,17 @@ class ModelSide(SidePanel):
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(self.tr("Reconstruct"))
-        self._verdict = self._label("model_verdict", "verdict")
-        self._reasons = self._label("model_reasons")
-        self._failed = self._label("model_failed", "failed")
+        self._verdict = text_label("model_verdict", "verdict")
+        self._reasons = text_label("model_reasons")
+        self._failed = text_label("model_failed", "failed")
         self.stale = StaleNote(("reconstruction", "quality", "collision"))
         self._empty_button = QPushButton()
         self._empty_button.setObjectName("model_empty_button")
         self._empty_button.clicked.connect(self.empty_wanted)
         self.facts = FactGrid("model_facts")
-        self._health_head = self._label("health_head", "heading")
+        self._health_head = text_label("health_head", "heading")
         self._health_head.setText(self.tr("Pose health of each view, lengths in mm"))
-        self._health = self._label("health_sentence", "muted")
+        self._health = text_label("health_sentence", "muted")
         self.table = self._make_table()
         self.parameters = FoldedParameters(desk, ("reconstruction", "collision"))
         self.parameters.opened.connect(lambda: QTimer.singleShot(0, self._scroll_to_parameters))
@@ -66,14 +67,6 @@ class ModelSide(SidePanel):
         self.body.addWidget(self.parameters)
         self.body.addStretch(1)
         self._failed.hide()
-
-    def _label(self, name: str, role: str = "") -> QLabel:
-        label = QLabel()
-        label.setObjectName(name)
-        label.setWordWrap(True)
-        if role:
-            label.setProperty("role", role)
-        return label
 
     def _make_table(self) -> FactTable:
         table = FactTable(

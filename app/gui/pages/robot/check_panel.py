@@ -29,17 +29,18 @@ class CheckPanel(Panel):
         self._note = label("plan_note", "muted")
         self._facts = FactGrid("plan_facts")
         self._checks: tuple[QCheckBox, ...] = ()
+        self._rehearsal = label("rehearsal", "muted")
         self._expiry = label("plan_expiry", "muted")
         self._reason = label("hold_reason", "attention")
         for one in (self._facts, self._note):
             self.column.addWidget(one)
         self.column.addWidget(label("checks_heading", "heading", self.tr("I have seen to it:")))
         self._checks = tuple(self._check(name) for name, *_ in checks(0))
-        for one in (self._expiry, self._reason):
+        for one in (self._rehearsal, self._expiry, self._reason):
             self.column.addWidget(one)
 
-    def show_plan(self, planned: PlannedPour, n_candies: int) -> None:
-        """Show a plan; of another one nothing is ticked yet."""
+    def show_plan(self, planned: PlannedPour, n_candies: int, *, is_rehearsal: bool) -> None:
+        """Show a plan; of another one nothing is ticked yet, unless it is a rehearsal."""
         say(self._note, planned.note)
         self._facts.set_facts(plan_facts(planned.plan))
         for check, (_, words, tip) in zip(self._checks, checks(n_candies), strict=True):
@@ -47,7 +48,8 @@ class CheckPanel(Panel):
             check.setAccessibleName(words)
             check.setToolTip(tip)
             if planned.number != self._number:
-                check.setChecked(False)
+                check.setChecked(is_rehearsal)
+        say(self._rehearsal, self._rehearsal_words() if is_rehearsal else "")
         self._number = planned.number
         self.look(planned)
 
@@ -68,6 +70,9 @@ class CheckPanel(Panel):
         if left:
             return self.tr("{n} more to tick.").format(n=left)
         return ""
+
+    def _rehearsal_words(self) -> str:
+        return self.tr("SIMULATED: ticked already. With a real arm each point is yours to tick.")
 
     def _check(self, name: str) -> QCheckBox:
         check = QCheckBox()

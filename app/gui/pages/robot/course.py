@@ -110,10 +110,20 @@ class Course(QObject):
 
     def connect_arm(self) -> None:
         """Connect the cell's arm; nothing moves."""
+        self._connect_arm(None)
+
+    def get_ready(self) -> None:
+        """Connect the arm if none is, and plan; nothing moves."""
+        if self.step is Step.CONNECT:
+            self._connect_arm(lambda _: self.plan())
+        elif self.step is Step.PLAN:
+            self.plan()
+
+    def _connect_arm(self, then: Callable[[Any], None] | None) -> None:
         cell = self._desk.cell.settings
         if cell is not None:
             self._cell = cell
-            self._start(Doing.CONNECTING, self.tr("Connect the arm"), ArmWork.connect, cell)
+            self._start(Doing.CONNECTING, self.tr("Connect the arm"), ArmWork.connect, cell, then=then)
 
     def disconnect_arm(self) -> None:
         """Let the arm go."""
@@ -283,8 +293,9 @@ class Course(QObject):
                 self.planned = None
             if step not in (Step.WAY_BACK, Step.BACK):
                 self.way = None
-        status = self._desk.arm.status
-        seen = (self.situation.is_connected, self.step, status.problem if status is not None else "")
+        arm, status = self._desk.arm, self._desk.arm.status
+        said = None if status is None else (status.problem, status.must_back_off, status.is_gripper_closed)
+        seen = (self.step, self.situation.is_connected, arm.farewell, said)
         if seen != self._seen:
             self._seen = seen
             self.changed.emit()

@@ -50,10 +50,12 @@ class Guide(QObject):
         step, is_idle = course.step, self._desk.jobs.is_idle
         situation = course.situation
         side.primary.setText(self._primary_text(step))
+        side.primary.setVisible(bool(side.primary.text()))
         is_ready = is_idle or step is Step.EMPTY
-        side.primary.setVisible(side.primary.isVisibleTo(side) and bool(side.primary.text()))
         if step is Step.CONNECT:
             is_ready = is_ready and self._desk.cell.settings is not None
+        if step is Step.PLAN:
+            is_ready = is_ready and not self._is_gripper_closed
         if step is Step.OUTCOME:
             is_ready = is_ready and side.outcome.is_complete
         side.primary.setEnabled(is_ready)
@@ -76,16 +78,21 @@ class Guide(QObject):
         elif step is Step.CONNECT:
             side.start.show_connect(self._desk.cell.settings, arm.farewell, course.failure)
         elif step is Step.PLAN:
-            is_closed = status is not None and bool(status.is_gripper_closed)
+            is_closed = self._is_gripper_closed
             side.start.show_plan(is_closed, course.has_backed_off, course.failure or course.stopped)
             if is_closed:
                 side.state.unfold()
         elif step is Step.CHECK and course.planned is not None:
-            side.check.show_plan(course.planned, course.n_candies)
+            side.check.show_plan(course.planned, course.n_candies, is_rehearsal=self._desk.cell.is_simulated)
         elif step.is_recovery and status is not None:
             side.recovery.show_step(step, self._what_happened(step), status.must_back_off, course.failure)
         elif step is Step.OUTCOME and course.run is not None:
             self._ask(course.run, standing)
+
+    @property
+    def _is_gripper_closed(self) -> bool:
+        status = self._course.situation.status
+        return status is not None and bool(status.is_gripper_closed)
 
     def _missing(self, standing: Standing | None) -> Missing | None:
         if standing is None and self._desk.workspace.session is not None:
@@ -99,8 +106,9 @@ class Guide(QObject):
         problem = status.problem if status is not None and step is Step.STOPPED else ""
         stopped = self._course.stopped
         state = status.state if status is not None else None
-        if stopped and state is not None and unreadiness(state.safety_mode, state.robot_mode) is None:
-            return stopped  # the arm itself knows nothing more than that
+        knows_more = state is not None and unreadiness(state.safety_mode, state.robot_mode) is not None
+        if stopped and not knows_more:
+            return stopped
         return " ".join(dict.fromkeys(filter(None, (stopped, problem))))
 
     def _ask(self, folder: Path, standing: Standing | None) -> None:

@@ -49,6 +49,7 @@ class RobotPage(Page):
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.addWidget(SplitView(self.view, self.side))
+        self._is_to_get_ready = False
         self._clock = QTimer(self, interval=_LOOK_MS)
         self._clock.timeout.connect(self._guide.look)
         self._clock.start()
@@ -88,6 +89,13 @@ class RobotPage(Page):
         self._load_standing()
         self._show()
         self._show_arm()
+
+    @override
+    def press_primary(self) -> None:
+        """Connect and plan, as soon as it is known whether there is something to pour."""
+        self._is_to_get_ready = self._standing is None
+        if not self._is_to_get_ready:
+            self.course.get_ready()
 
     def _load_cell(self) -> None:
         cell, cup = self.desk.cell.settings, self.desk.workspace.parameters.pouring.cup
@@ -131,6 +139,9 @@ class RobotPage(Page):
         if planned is not None and standing.chosen not in (None, (planned.plan.i, planned.plan.j)):
             self.course.drop_plan()
         self._show()
+        if self._is_to_get_ready:
+            self._is_to_get_ready = False
+            self.course.get_ready()
 
     def _do_primary(self) -> None:
         course, step = self.course, self.course.step
@@ -203,6 +214,9 @@ class RobotPage(Page):
         if not self.isVisible():
             return
         if not is_ours or status is None:
-            self.view.show_arm(None, False)
+            self.view.show_arm(None, holds_cup=False)
         elif status.state is not None:
-            self.view.show_arm(status.state.joints_rad, bool(status.is_gripper_closed))
+            is_under_way = self.course.step.is_moving or status.must_back_off
+            at_rest = None if status.is_gripper_closed else False  # closed by whom, around what?
+            holds_cup = bool(status.is_gripper_closed) if is_under_way else at_rest
+            self.view.show_arm(status.state.joints_rad, holds_cup)

@@ -31,7 +31,7 @@ class RecoveryPanel(Panel):
         self.column.addWidget(self._what)
         self._steps = (
             _GuideStep(1, self.tr("Look what stopped it, and put that right.")),
-            _GuideStep(2, self.tr("Make the arm ready again. It does not move.")),
+            _GuideStep(2, self.tr("Recover: make the arm ready again. It does not move.")),
             _GuideStep(
                 3,
                 self.tr(

@@ -74,7 +74,7 @@ class RobotSide(SidePanel):
         self.runs.hide()
 
     def show_step(self, step: Step) -> None:
-        """Show the panel and the button of a step."""
+        """Show the panel of a step, and the button that is held in it; the primary one goes by its text."""
         self.steps.set_current(step.number)
         shown = {Step.CHECK: self.check, Step.OUTCOME: self.outcome}.get(step, self.start)
         if step.is_moving:
@@ -83,8 +83,6 @@ class RobotSide(SidePanel):
             shown = self.recovery
         for panel in self._panels:
             panel.setVisible(panel is shown)
-        is_held = step in (Step.CHECK, Step.BACK)
-        self.primary.setVisible(not is_held and not step.is_moving)
         self.hold_to_pour.setVisible(step is Step.CHECK)
         self.hold_to_back_off.setVisible(step is Step.BACK)
         self.again.setVisible(step in (Step.CHECK, Step.OUTCOME))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 from PySide6.QtWidgets import QLabel, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
@@ -17,6 +19,7 @@ from core.motion.kinematics import flange_pose
 AHEAD_S = 1.0
 """So far the ghost is ahead of the moving arm, in seconds of the plan."""
 _CUP_OPACITY, _GHOST_CUP_OPACITY, _GHOST_ARM = 0.55, 0.3, "planned arm"
+_MOST_OFTEN_S = 0.09
 _SAME_RAD = 5e-4
 _APART_RAD = 0.01
 """Nearer than this the ghost would only blur the arm."""
@@ -36,7 +39,10 @@ class ArmView(QWidget):
         self._cell: ShownCell | None = None
         self._motion: ShownMotion | None = None
         self._joints_rad: FloatArray | None = None
-        self._grip: tuple[bool, FloatArray | None] = False, None
+        self._holds_cup: bool | None = False
+        self._T_flange_cup: FloatArray | None = None
+        self._drawn: tuple[FloatArray, bool | None] | None = None
+        self._drawn_s = 0.0
         self._is_following = False
         self.scene = Scene3D()
         self.scene.setObjectName("robot_scene")
@@ -100,21 +106,23 @@ class ArmView(QWidget):
         else:
             self.scene.set_prepared_mesh("object", mesh)
 
-    def show_arm(self, joints_rad: FloatArray | None, is_gripper_closed: bool) -> None:
-        """Show where the arm is now; none: it is not connected, and drawn at its home."""
+    def show_arm(self, joints_rad: FloatArray | None, holds_cup: bool | None) -> None:
+        """Show where the arm is now.
+
+        Args:
+            joints_rad: (6,); none: it is not connected, and drawn at its home.
+            holds_cup: whether the cup is in the hand, not at its station; none: nobody knows.
+        """
         was_connected, is_connected = self._joints_rad is not None, joints_rad is not None
-        before, self._joints_rad = self._joints_rad, joints_rad
+        self._joints_rad, self._holds_cup = joints_rad, holds_cup
         if self._cell is None:
             return
         if was_connected != is_connected:
             self._set_arm(is_connected)
             self._show_caption()
-        elif joints_rad is not None and before is not None and _differ(joints_rad, before, _SAME_RAD):
-            self.scene.set_joints("arm", joints_rad)
-        elif is_gripper_closed == self._grip[0]:
-            return
-        self._grip = is_gripper_closed, self._grip[1]
-        self._place_cup()
+            self._place_cup()
+        elif not self._is_following:  # while it moves, `follow` draws
+            self._draw_arm()
 
     def show_motion(self, motion: ShownMotion | None) -> None:
         """Show what was planned from its beginning; none: nothing."""
@@ -126,7 +134,7 @@ class ArmView(QWidget):
         if motion is None:
             self.timeline.set_sections(0.0)
         else:
-            self._grip = self._grip[0], motion.T_flange_cup
+            self._T_flange_cup = motion.T_flange_cup
             self.scene.set_line("way", motion.mouth_m, color="ghost", width_px=2)
             if motion.pivot_m is not None:
                 self.scene.set_label("pivot", motion.pivot_m, self.tr("pivot"))
@@ -142,14 +150,30 @@ class ArmView(QWidget):
 
     def follow(self, done_s: float | None) -> None:
         """Let the time line go with the moving arm, the ghost a little ahead; none: it has ended."""
-        if done_s is None and not self._is_following:
-            return
-        self._is_following = done_s is not None
-        self.timeline.setEnabled(not self._is_following)
-        if done_s is not None:
+        if (done_s is not None) != self._is_following:
+            self._is_following = done_s is not None
             self.timeline.pause()
+            self.timeline.setEnabled(not self._is_following)
+            self._show_caption()
+        elif done_s is None or time.monotonic() - self._drawn_s < _MOST_OFTEN_S:
+            return
+        self._drawn_s = time.monotonic()
+        self._draw_arm()
+        if done_s is not None:
             self.timeline.set_time(done_s)
-        self._show_caption()
+
+    def _draw_arm(self) -> None:
+        """Bring the arm, and the cup in its hand, to where they are, if they were seen elsewhere."""
+        joints_rad = self._joints_rad
+        if joints_rad is None or self._cell is None:
+            return
+        drawn = self._drawn
+        is_same_hand = drawn is not None and drawn[1] == self._holds_cup
+        if drawn is not None and is_same_hand and not _differ(joints_rad, drawn[0], _SAME_RAD):
+            return
+        self._drawn = joints_rad, self._holds_cup
+        self.scene.set_joints("arm", joints_rad)
+        self._place_cup()
 
     def _set_arm(self, is_connected: bool) -> None:
         """An arm of which nobody knows where it is, is see-through."""
@@ -157,19 +181,21 @@ class ArmView(QWidget):
         cell = self._cell
         joints_rad = cell.home_rad if self._joints_rad is None else self._joints_rad
         self.scene.set_arm("arm", cell.arm, joints_rad, tools=cell.tools, is_ghost=not is_connected)
+        self._drawn = None
 
     def _place_cup(self) -> None:
-        """In the hand if the gripper holds it, else at its station; away if nobody knows how it is held."""
-        cell = self._cell
+        """In the hand or at its station; away if nobody knows where it is."""
+        cell, joints_rad, T_flange_cup = self._cell, self._joints_rad, self._T_flange_cup
         if cell is None:
             return
-        is_closed, T_flange_cup = self._grip
-        is_known = not is_closed or (T_flange_cup is not None and self._joints_rad is not None)
-        self.scene.set_visible("cup", is_known)
-        if is_closed and T_flange_cup is not None and self._joints_rad is not None:
-            self.scene.set_pose("cup", flange_pose(cell.arm, self._joints_rad) @ T_flange_cup)
-        else:
-            self.scene.set_pose("cup", make_pose(np.eye(3), cell.station_m))
+        T_base_cup: FloatArray | None = make_pose(np.eye(3), cell.station_m)
+        if self._holds_cup and joints_rad is not None and T_flange_cup is not None:
+            T_base_cup = flange_pose(cell.arm, joints_rad) @ T_flange_cup
+        elif self._holds_cup is not False:
+            T_base_cup = None
+        self.scene.set_visible("cup", T_base_cup is not None)
+        if T_base_cup is not None:
+            self.scene.set_pose("cup", T_base_cup)
 
     def _show_time(self, time_s: float) -> None:
         """Put the ghost to where the plan is at a time."""

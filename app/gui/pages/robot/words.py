@@ -96,7 +96,7 @@ def plan_facts(plan: PourPlan) -> list[Fact]:
         ),
         Fact(
             translate("RobotWords", "Pivot"),
-            translate("RobotWords", "stays within {mm:.2f} mm").format(mm=plan.pivot_error_m * MM),
+            translate("RobotWords", "stays within {mm:.2f} mm").format(mm=max(plan.pivot_error_m * MM, 0.01)),
             translate(
                 "RobotWords",
                 "How far the point of the rim about which the cup turns wanders meanwhile; from the plan",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.gui.views.scene.shapes import box_mesh
+from core.motion.kinematics import link_poses
 
 if TYPE_CHECKING:
     from app.gui.views.scene.shapes import Shape
@@ -21,6 +22,8 @@ _MARGIN_M = 0.04
 _TABLE_M = 0.03
 _BASE_M = 0.12
 """About the robot's foot."""
+_ARM_M = 0.08
+"""About its links' middles."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +34,7 @@ class CellPicture:
         arm: the model; none in a cell that plays a recorded scan.
         tools: on its flange.
         home_rad: (6,) where it rests.
+        reach_m: (2, 3) corners of a box around it at rest and at all views.
         table: the part of it that is of interest.
         platform: where the object stands.
         obstacles: further things to keep away from.
@@ -41,6 +45,7 @@ class CellPicture:
     arm: ArmModel | None
     tools: tuple[Capsule, ...]
     home_rad: FloatArray
+    reach_m: FloatArray
     table: Shape
     platform: Shape
     obstacles: tuple[Shape, ...]
@@ -61,6 +66,7 @@ def picture_cell(cell: CellSettings) -> CellPicture:
         arm=known.arm if cell.robot.kind != "replay" else None,
         tools=known.tools,
         home_rad=np.array(cell.robot.home_rad),
+        reach_m=_reach_m(known.arm, np.array([cell.robot.home_rad, *cell.scan.views_rad])),
         table=box_mesh(
             (*(corners.min(axis=0) - _MARGIN_M), top - _TABLE_M), (*(corners.max(axis=0) + _MARGIN_M), top)
         ),
@@ -69,3 +75,9 @@ def picture_cell(cell: CellSettings) -> CellPicture:
         box_min_m=np.array(place.crop_min_m),
         box_max_m=np.array(place.crop_max_m),
     )
+
+
+def _reach_m(arm: ArmModel, joints_rad: FloatArray) -> FloatArray:
+    """Corners (2, 3) of the box that the arm fills at joint angles (N, 6)."""
+    middles = link_poses(arm, joints_rad)[..., :3, 3].reshape(-1, 3)
+    return np.array([middles.min(axis=0) - _ARM_M, middles.max(axis=0) + _ARM_M])

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QListView, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from app.gui.pages.page import SplitView
@@ -30,7 +31,10 @@ class ScanLeft(QWidget):
         view: in 3D.
         verdict: below it.
         grid: of thumbnails.
+        view_picked: the index of the view that was clicked, in 3D or in small.
     """
+
+    view_picked = Signal(int)
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,6 +50,8 @@ class ScanLeft(QWidget):
         below.setContentsMargins(GRID_PX, 0, 0, GRID_PX)
         below.addWidget(self.grid)
         self._column.addLayout(below)
+        self.view.view_picked.connect(self.view_picked)
+        self.grid.selected.connect(self._pick)
 
     def make_room(self) -> None:
         """Give the thumbnails as many rows as they need, after their number has changed."""
@@ -55,6 +61,12 @@ class ScanLeft(QWidget):
             columns = max((self.width() - GRID_PX) // _CELL_PX[0], 1)
             needed = -(-n // columns) * _CELL_PX[1]
             self.grid.setFixedHeight(round(max(min(needed, self.height() / 3), _SHARE * self.height())))
+
+    def _pick(self, index: int) -> None:
+        """A list that gets the focus calls its first entry the current one; that is nobody's choice."""
+        entries = self.grid.findChild(QListView)
+        if entries is not None and entries.selectionModel().isSelected(entries.model().index(index, 0)):
+            self.view_picked.emit(index)
 
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:

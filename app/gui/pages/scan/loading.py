@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -206,8 +206,6 @@ def _picture(path: Path) -> Picture:
 
 def _with_results(session: Session, contents: ScanContents) -> ScanContents:
     """Add what was made from the scan, as far as it is there."""
-    from dataclasses import replace
-
     from core.quality import ScanQuality
     from core.reconstruction import Reconstruction
 

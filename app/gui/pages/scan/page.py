@@ -43,6 +43,7 @@ class ScanPage(Page):
         self._images = ShownImages(self.side, self._views, desk.background)
         self._contents: ScanContents | None = None
         self._folder: Path | None = None
+        self._views_of: Path | None = None
         self._grown: PreparedMesh | None = None
         self._proposal: Proposal | None = None
         self._can_pause = self._is_paused = False
@@ -64,8 +65,7 @@ class ScanPage(Page):
         side.folder_chosen.connect(self._imports.take_folder)
         side.mesh_chosen.connect(self._imports.take_mesh)
         side.choice.changed.connect(self._look)
-        self.left.grid.selected.connect(self._select)
-        self.left.view.view_picked.connect(self._select)
+        self.left.view_picked.connect(self._select)
         self.left.verdict.action.clicked.connect(self._act)
         self._drops.arrived.connect(self._imports.take_dropped)
         self._work.proposed.connect(self._take_proposal)
@@ -87,7 +87,6 @@ class ScanPage(Page):
         if workspace.folder != self._folder:
             self._folder = workspace.folder
             self._contents = self._proposal = self._grown = None
-            self._views.forget()
             self._images.forget()
         cell, seed = self.desk.cell.settings, workspace.parameters.seed
         load = partial(load_contents, workspace.session, cell, seed)
@@ -99,6 +98,7 @@ class ScanPage(Page):
             return
         is_first = self._contents is None
         self._contents = contents
+        self._own_views()
         self._views.take_over(contents)
         if is_first and contents.object_name is not None:
             self.side.choice.choose(contents.object_name)
@@ -132,6 +132,7 @@ class ScanPage(Page):
             return
         if isinstance(news, ViewsPlanned):
             self._can_pause = True
+            self._own_views()
             self._views.plan(news)
             self._show_views()
         elif isinstance(news, ViewDone):
@@ -168,6 +169,12 @@ class ScanPage(Page):
     def _job_ended(self) -> None:
         self._is_paused = False
         self._look()
+
+    def _own_views(self) -> None:
+        """The table is about the open session from now on; until now it showed what was there before."""
+        if self._views_of != self._folder:
+            self._views_of = self._folder
+            self._views.forget()
 
     def _show_views(self) -> None:
         self.left.grid.set_items(self._views.thumbnails())
@@ -289,7 +296,9 @@ class ScanPage(Page):
         """Show what may be done, and what is said."""
         now, side = self._situation(), self.side
         verdict = verdict_of(now)
-        self.left.verdict.say(verdict.state, verdict.headline, verdict.details, verdict.action)
+        self.left.verdict.say(
+            verdict.state, verdict.headline, verdict.details, verdict.action, verdict.tooltip
+        )
         can_act = now.is_idle and (verdict.deed is Deed.JUDGE or now.can_scan)
         self._offer(self.left.verdict.action, verdict.deed is not Deed.NOTHING, can_act)
         self._offer(side.start_anew, now.can_continue and not now.is_scanning, now.can_scan)

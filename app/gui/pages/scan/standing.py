@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from PySide6.QtCore import QCoreApplication
@@ -15,6 +15,7 @@ from app.gui.pages.scan.words import (
     proposal_sentence,
     quality_headline,
     quality_reasons,
+    quality_tooltip,
     take_more_text,
 )
 from app.gui.pages.scan.work import HIDDEN_AREA_M2
@@ -118,6 +119,7 @@ class Verdict:
         details: further ones.
         deed: of the button.
         action: its text.
+        tooltip: where the headline's numbers come from.
     """
 
     state: State
@@ -125,6 +127,7 @@ class Verdict:
     details: tuple[str, ...] = ()
     deed: Deed = Deed.NOTHING
     action: str = ""
+    tooltip: str = ""
 
 
 def verdict_of(now: Situation) -> Verdict:
@@ -138,8 +141,10 @@ def verdict_of(now: Situation) -> Verdict:
         return _mesh(contents)
     if contents.source == "kept":
         return _kept(contents, now)
+    if contents.source == "scan" and contents.quality is None:
+        return _not_judged(contents, now)
     if contents.source == "scan":
-        return _not_judged(contents, now) if contents.quality is None else _judged(contents, now)
+        return replace(_judged(contents, now), tooltip=quality_tooltip())
     return _nothing(contents, now)
 
 

@@ -12,7 +12,7 @@ from app.gui.views.state_mark import State, StateMark
 
 _HEIGHT_PX = 10 * GRID_PX
 """Kept whatever is said: if it changed, the 3D view would jump, and be drawn anew."""
-_TOLD = 2
+_TOLD = 3
 """Reasons that are shown; the others are in the tooltip."""
 
 

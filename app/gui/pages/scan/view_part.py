@@ -14,6 +14,8 @@ from app.jobs.scan_news import ViewNews
 
 ARM, BOX, OBJECT, PLATFORM, TABLE, VIEWS = "arm", "box", "object", "platform", "table", "views"
 _OBSTACLE = "obstacle"
+_REACH = "reach"
+"""Two points nobody sees: with them in view, the arm is, wherever a scan takes it."""
 _PLATFORM_OPACITY = 0.35
 
 
@@ -87,7 +89,7 @@ class ScanView(QWidget):
     def _draw_cell(self, cell: CellPicture) -> None:
         scene = self.scene
         for name in scene.layers():
-            if name.startswith(_OBSTACLE) or name == ARM:
+            if name.startswith(_OBSTACLE) or name in (ARM, _REACH):
                 scene.remove(name)
         scene.set_mesh(TABLE, *cell.table, color="raised")
         scene.set_mesh(PLATFORM, *cell.platform, color="accent", opacity=_PLATFORM_OPACITY)
@@ -96,7 +98,8 @@ class ScanView(QWidget):
         scene.set_box(BOX, cell.box_min_m, cell.box_max_m)
         if cell.arm is not None:
             scene.set_arm(ARM, cell.arm, cell.home_rad, tools=cell.tools)
-        scene.fit(TABLE, BOX, VIEWS)
+            scene.set_points(_REACH, cell.reach_m, color="scene", size_px=1)
+        scene.fit(TABLE, BOX, VIEWS, _REACH)
 
     def _pick(self, layer: str, index: int) -> None:
         if layer == VIEWS and index < len(self._placed):

@@ -62,6 +62,15 @@ def quality_headline(quality: ScanQuality, pose_error_m: float | None) -> str:
     return f"{verdicts.get(quality.verdict, quality.verdict)}: {', '.join(facts)}"
 
 
+def quality_tooltip() -> str:
+    """Say where the headline's numbers come from."""
+    return translate(
+        "ScanPage",
+        "Seen: share of the reconstructed surface, without what looks down, that at least one view saw.\n"
+        "Pose error: how far the surface that one view shows lies off, after the views were made to agree.",
+    )
+
+
 def quality_reasons(quality: ScanQuality, views: Sequence[ViewNews]) -> list[str]:
     """Return why a scan is no better, a sentence each; none for a good one."""
     if quality.verdict == "good":

@@ -17,7 +17,7 @@ from app.jobs.session_work import SessionTask, SessionWork
 from core.parameters import apply_settings
 from hardware.cell import read_cell
 from hardware.simulation.ur_controller.addresses import CONTROL_PORT
-from tests.app.gui.sessions import copied
+from tests.app.sessions import copied
 
 pytest.importorskip("rtde_control")
 

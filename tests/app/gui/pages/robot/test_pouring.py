@@ -5,14 +5,20 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
+import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox, QLabel
 
-from app.gui.pages.robot.steps import Doing, Step
+from app.gui.pages.robot.check_panel import CheckPanel
+from app.gui.pages.robot.steps import Step
 from core.session.pour_runs import pour_runs
+from hardware.cell.cell_file import CELL_FOLDER
+from hardware.simulation.ur_controller.addresses import CONTROL_PORT
 
 pytest.importorskip("rtde_control")
 
@@ -25,7 +31,9 @@ def reach(page, qtbot):
 
     def reach_(step, timeout=40_000):
         def is_there():
-            return page.course.step is step and page.desk.jobs.is_idle and page.desk.background.is_idle
+            is_idle = page.desk.jobs.is_idle and page.desk.background.is_idle
+            course = page.course
+            assert course.step is step and is_idle, f"{course.step}: {course.failure} {course.stopped}"
 
         qtbot.waitUntil(is_there, timeout=timeout)
 
@@ -49,9 +57,9 @@ def hold(qtbot, button):
     qtbot.mouseRelease(button, Qt.MouseButton.LeftButton)
 
 
-def tick_all(page):
+def tick_all(page, is_ticked=True):
     for name in CHECKS:
-        page.findChild(QCheckBox, name).setChecked(True)
+        page.findChild(QCheckBox, name).setChecked(is_ticked)
 
 
 def pour_until(page, qtbot, reach, move):
@@ -72,9 +80,24 @@ def text(page, name):
     return page.findChild(QLabel, name).text()
 
 
+def test_with_a_real_arm_nothing_is_ticked_before_somebody_does(qtbot):
+    panel = CheckPanel()
+    qtbot.addWidget(panel)
+    planned = SimpleNamespace(number=1, note="", plan=None, expires_s=time.monotonic() + 60)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.gui.pages.robot.check_panel.plan_facts", lambda _: [])
+        panel.show_plan(planned, 60, is_rehearsal=False)
+    boxes = [panel.findChild(QCheckBox, name) for name in CHECKS]
+    assert not any(box.isChecked() for box in boxes)
+    assert "Tick each point" in panel.reason(planned)
+    for box in boxes:
+        box.setChecked(True)
+    assert panel.reason(planned) == ""
+
+
 def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
     page, side = ready, ready.side
-    assert "running" in [label.text() for label in side.state.findChildren(QLabel)]
+    qtbot.waitUntil(lambda: "running" in [label.text() for label in side.state.findChildren(QLabel)])
     side.primary.click()
     reach(Step.CHECK)
 
@@ -88,6 +111,9 @@ def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
     assert any(free in label.text() for label in side.check.findChildren(QLabel))
 
     button = side.hold_to_pour
+    assert button.isEnabled(), "nothing real moves"
+    assert "ticked already" in text(page, "rehearsal")
+    tick_all(page, is_ticked=False)
     assert not button.isEnabled()
     assert "Tick each point" in text(page, "hold_reason")
     tick_all(page)
@@ -133,9 +159,10 @@ def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
     side.runs.chosen.emit(run.folder)
     assert page.course.step is Step.OUTCOME
     assert "As it was entered" in text(page, "outcome_how")
+    tick_all(page, is_ticked=False)
     side.again.click()
     reach(Step.CHECK)
-    assert not any(page.findChild(QCheckBox, name).isChecked() for name in CHECKS)
+    assert all(page.findChild(QCheckBox, name).isChecked() for name in CHECKS), "another plan, ticked anew"
 
 
 def test_after_a_stop_the_guide_leads_back_to_a_new_plan(ready, qtbot, reach, mug_session):
@@ -173,7 +200,7 @@ def test_a_killed_process_is_told_and_connecting_again_works(ready, qtbot, reach
     pour_until(page, qtbot, reach, "lay")
     os.kill(page.desk.arm_host.pid, signal.SIGKILL)
     reach(Step.CONNECT)
-    assert "ended unexpectedly" in text(page, "start_note")
+    qtbot.waitUntil(lambda: "ended unexpectedly" in text(page, "start_note"), timeout=2000)
     assert not page.side.state.isVisibleTo(page)
     assert "Not connected" in text(page, "arm_caption")
     page.side.primary.click()
@@ -183,7 +210,32 @@ def test_a_killed_process_is_told_and_connecting_again_works(ready, qtbot, reach
     assert "ended while the arm moved" in run.sentence
 
 
-def test_at_rest_stop_gripper_and_another_cell(ready, qtbot, reach):
+def test_where_there_is_no_way_back_one_connects_anew(ready, qtbot, reach):
+    page, side = ready, ready.side
+    pour_until(page, qtbot, reach, "to the cup")
+    address = page.desk.arm.connected.stop_address
+    with socket.create_connection((address, CONTROL_PORT), 5) as controller:
+        controller.sendall(b"kill\n")
+    reach(Step.STOPPED)
+    assert page.course.stopped
+    side.primary.click()
+    qtbot.waitUntil(lambda: bool(page.course.failure), timeout=20_000)
+    link = side.findChild(object, "by_hand")
+    assert link.isVisibleTo(page)
+    link.click()
+    reach(Step.PLAN)
+
+
+@pytest.fixture
+def cell_of_nobody(tmp_path):
+    """A real cell whose controller is switched off."""
+    text = (CELL_FOLDER / "ur5_example.toml").read_text()
+    path = tmp_path / "nobody.toml"
+    path.write_text(text.replace("192.168.0.10", "127.9.9.9"))
+    return path
+
+
+def test_at_rest_stop_gripper_and_other_cells(ready, qtbot, reach, cell_of_nobody):
     page, side = ready, ready.side
     page.desk.arm.stop()
     reach(Step.STOPPED)
@@ -198,16 +250,22 @@ def test_at_rest_stop_gripper_and_another_cell(ready, qtbot, reach):
     qtbot.waitUntil(lambda: button.text() == "Hold to open the gripper", timeout=5000)
     reach(Step.PLAN)
     qtbot.waitUntil(lambda: "The gripper is closed" in text(page, "start_note"), timeout=3000)
-    side.primary.click()
-    qtbot.waitUntil(lambda: page.course.doing is Doing.NOTHING, timeout=20_000)
-    assert "open the gripper" in text(page, "start_failure")
+    assert not side.primary.isEnabled()
     hold(qtbot, button)
     qtbot.waitUntil(lambda: text(page, "start_note") == "", timeout=5000)
+    reach(Step.PLAN)
 
     page.desk.cell.choose(None)
-    qtbot.waitUntil(lambda: page.course.step is Step.CONNECT, timeout=5000)
+    reach(Step.CONNECT)
     side.primary.click()
     reach(Step.PLAN)
     side.findChild(object, "disconnect").click()
     reach(Step.CONNECT)
     assert text(page, "start_note") == ""
+
+    page.desk.cell.choose(cell_of_nobody)
+    reach(Step.CONNECT)
+    assert "127.9.9.9" in text(page, "start_text")
+    side.primary.click()
+    reach(Step.CONNECT)
+    assert "Nobody answers at 127.9.9.9" in text(page, "start_failure")

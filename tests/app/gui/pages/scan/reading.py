@@ -1,8 +1,8 @@
-"""What a user reads on the page."""
+"""What a user reads and clicks on the page."""
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QLabel, QPushButton
+from PySide6.QtWidgets import QLabel, QListView, QPushButton
 
 
 def text(page, name):
@@ -27,3 +27,8 @@ def details(page):
 
 def states(page):
     return [item.state for item in page.left.grid.items]
+
+
+def pick_thumbnail(page, index):
+    entries = page.left.grid.findChild(QListView)
+    entries.setCurrentIndex(entries.model().index(index, 0))

@@ -6,14 +6,14 @@ import json
 import shutil
 
 import pytest
-from PySide6.QtWidgets import QCheckBox, QComboBox
+from PySide6.QtWidgets import QCheckBox, QComboBox, QListView
 
 from app.jobs.arm_news import ArmConnected, ArmGone
 from app.scanning import IN_PROGRESS
 from core.resources import RESOURCES
 from hardware.cell import read_cell
 from tests.app.gui.pages.scan.conftest import N_VIEWS, settle
-from tests.app.gui.pages.scan.reading import button, details, headline, primary, states, text
+from tests.app.gui.pages.scan.reading import button, details, headline, pick_thumbnail, primary, states, text
 
 
 def opened(make_page, desk, folder):
@@ -48,6 +48,15 @@ def test_a_finished_scan_has_its_verdict_and_its_views(qtbot, desk, make_page, m
     assert page.side._depth.range_m[1] < 2
     assert page.side._image._image.width() > 200
     assert button(page, "take_again").isEnabled()
+
+
+def test_a_list_that_gets_the_focus_chooses_nothing(qtbot, desk, make_page, mug_session):
+    page = opened(make_page, desk, mug_session)
+    page._follow()
+    primary(page).setFocus()
+    page.left.grid.findChild(QListView).setFocus()
+    assert page.left.grid.findChild(QListView).hasFocus()
+    assert page._images.selected is None
 
 
 def test_another_object_begins_a_session_of_its_own(qtbot, desk, make_page, mug_session):
@@ -118,7 +127,7 @@ def test_a_poor_scan_says_why_and_offers_its_poor_views(desk, make_page, mug_ses
     assert states(page)[4] == "poor"
     assert states(page)[9] == "failed"
     assert button(page, "verdict_action").text() == "Take 2 poor again"
-    page.left.grid.selected.emit(4)
+    pick_thumbnail(page, 4)
     assert text(page, "caption") == "View 5: taken, but poor"
     assert text(page, "view_said") == "It sees the table 12 mm above its place."
 

@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.jobs.arm_news import ArmStatus
 from hardware.simulation.objects import builtin_object
 from tests.app.gui.pages.scan.conftest import JOB_MS, N_VIEWS, settle
-from tests.app.gui.pages.scan.reading import button, details, headline, primary, states, text
-from tests.app.gui.sessions import quick_parameters
+from tests.app.gui.pages.scan.reading import button, details, headline, pick_thumbnail, primary, states, text
+from tests.app.sessions import quick_parameters
 
 
 def n_taken(page):
@@ -71,7 +71,7 @@ def test_a_view_is_taken_again_and_judged_anew(qtbot, desk, make_page, mug_sessi
     desk.jobs.finished.connect(lambda job, _: finished.append(job.title))
     image = mug_session / "scan/rgbd/frame-000002.depth.png"
     written_ns = image.stat().st_mtime_ns
-    page.left.grid.selected.emit(2)
+    pick_thumbnail(page, 2)
     qtbot.mouseClick(button(page, "take_again"), Qt.MouseButton.LeftButton)
     assert not button(page, "take_again").isEnabled()
     qtbot.waitUntil(lambda: len(finished) == 2, timeout=JOB_MS)

@@ -6,9 +6,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QLabel
 
 
-def text_label(name: str, role: str = "") -> QLabel:
+def text_label(name: str, role: str = "", text: str = "") -> QLabel:
     """Return a label that wraps and whose text can be copied; `role` is one of the palette's."""
-    label = QLabel()
+    label = QLabel(text)
     label.setObjectName(name)
     label.setWordWrap(True)
     label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -33,5 +33,6 @@ def rule() -> QFrame:
 
 def say(label: QLabel, text: str) -> None:
     """Show a text, or nothing at all."""
-    label.setText(text)
+    if text != label.text():
+        label.setText(text)
     label.setVisible(bool(text))

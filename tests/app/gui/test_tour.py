@@ -1,0 +1,76 @@
+"""The whole program by clicks: from a new session to the recorded outcome of a simulated pour."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import psutil
+import pytest
+
+from app.gui.desk.memory import Memory
+from app.gui.heartbeat import Heartbeat
+from app.gui.tour import Tour
+from app.gui.walk import Walk
+from app.gui.window import MainWindow
+
+LONGEST_STALL_S = 0.100
+
+
+@pytest.fixture
+def fresh_window(qtbot, forgetful, monkeypatch, tmp_path):
+    """A window as a newcomer gets it: nothing made, nothing imported, no sessions."""
+    monkeypatch.setenv("POURSIGHT_SESSIONS", str(tmp_path / "sessions"))
+    window = MainWindow(Memory())
+    qtbot.addWidget(window)
+    window.show()
+    yield window
+    window.close_without_asking()
+
+
+def _pour_the_mug(window, capsys):
+    walk, heartbeat = Walk(window), Heartbeat(window)
+    tour = Tour(walk, print)
+    window.begin()
+    run = tour.run()
+    with capsys.disabled():
+        print(
+            f"\n{run.outcome.sentence} {walk.clicks} clicks; longest stall "
+            f"{1000 * heartbeat.worst_s:.0f} ms, "
+            f"{heartbeat.worst_at_s:.0f} s after the start"
+        )
+    return run, heartbeat.worst_s
+
+
+@pytest.mark.slow
+@pytest.mark.gl
+def test_a_newcomer_pours_into_the_mug_and_the_window_never_stalls(fresh_window, capsys):
+    run, worst_s = _pour_the_mug(fresh_window, capsys)
+    assert run.is_done
+    assert run.outcome.n_spilled == 0
+    assert run.outcome.n_candies == 60
+    assert worst_s < LONGEST_STALL_S
+
+
+@pytest.mark.slow
+def test_the_headless_check_passes_and_leaves_nothing_behind(tmp_path):
+    environment = os.environ | {"TMPDIR": str(tmp_path)}
+    before = {process.pid for process in psutil.process_iter()}
+    done = subprocess.run(
+        [sys.executable, "-m", "app.cli", "--headless-check"],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=400,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "candies were spilled" in done.stdout.splitlines()[-1]
+    left = [
+        process
+        for process in psutil.process_iter(["cmdline"])
+        if process.pid not in before and "spawn_main" in " ".join(process.info["cmdline"] or [])
+    ]
+    assert left == []
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith("poursight-check")] == []
