@@ -12,11 +12,10 @@ from pathlib import Path
 
 from PIL import Image
 from PySide6.QtCore import QSettings
-from PySide6.QtTest import QTest
 
 from app.gui.main import make_application, open_window
 from app.gui.pages.registry import OTHERS, WORK
-from app.gui.walk import Walk
+from app.gui.walk import Walk, let_work
 from app.library.places import SESSIONS_VARIABLE
 from tests.app.sessions import make_poured_session, make_session
 
@@ -25,7 +24,7 @@ THEMES = ("light", "dark")
 OBJECTS = {"mug": make_poured_session, "block": make_session}
 _COLORS = 200
 """Enough for a screenshot; a third of the bytes."""
-_SETTLING_MS = 1200
+_SETTLING_S = 1.2
 
 
 def main() -> None:
@@ -71,15 +70,15 @@ def _plan(walk: Walk) -> None:
     """Connect the simulated arm and plan, so that there is something to see."""
     for what in ("connect", "plan"):
         walk.window.page("robot").press_primary()
-        QTest.qWait(200)
+        let_work(0.2)
         walk.wait_for_work(what, 60)
 
 
 def _keep(walk: Walk, path: Path) -> None:
-    QTest.qWait(300)
+    let_work(0.3)
     walk.wait(lambda: walk.window.desk.background.is_idle, "the page is loaded", 60)
     walk.wait_for_work("the page's work", 60)
-    QTest.qWait(_SETTLING_MS)
+    let_work(_SETTLING_S)
     walk.window.grab().save(str(path))
     with Image.open(path) as picture:
         small = picture.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)

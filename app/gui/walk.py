@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEventLoop, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QWidget
 
@@ -15,6 +15,13 @@ from core.errors import StageError
 
 W = TypeVar("W", bound=QWidget)
 _POLL_MS = 20
+
+
+def let_work(seconds: float) -> None:
+    """Run the event loop for a while; `QTest.qWait` would keep Python's other threads from their work."""
+    loop = QEventLoop()
+    QTimer.singleShot(round(1000 * seconds), loop.quit)
+    loop.exec()
 
 
 class WalkEnded(StageError):
@@ -44,7 +51,7 @@ class Walk:
             if time.monotonic() > deadline_s:
                 said = self.window.messages.sentence
                 raise WalkEnded(f"'{what}' did not happen within {within_s:.0f} s. {said}".rstrip())
-            QTest.qWait(_POLL_MS)
+            let_work(_POLL_MS / 1000)
 
     def wait_for_work(self, what: str, within_s: float) -> None:
         """Let the window work until nothing is under way."""
@@ -71,5 +78,5 @@ class Walk:
         assert button is not None, "waited for"
         self.clicks += 1
         QTest.mousePress(button, Qt.MouseButton.LeftButton)
-        QTest.qWait(round(1000 * seconds))
+        let_work(seconds)
         QTest.mouseRelease(button, Qt.MouseButton.LeftButton)

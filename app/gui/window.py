@@ -6,7 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QTimer, Signal
-from PySide6.QtGui import QCloseEvent
+from PySide6.QtGui import QCloseEvent, QGuiApplication
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
@@ -73,7 +73,7 @@ class MainWindow(QMainWindow):
 
     def begin(self) -> None:
         """Start what takes its time; the window is on the screen by now."""
-        self.desk.prepare()
+        self.desk.cell.restore()
         self._warming.done.connect(self._make_pages)
         self._warming.start()
 
@@ -81,6 +81,7 @@ class MainWindow(QMainWindow):
         """Make the pages one by one, so that no click has to wait for one; then all is ready."""
         missing = [key for key in (*WORK, *OTHERS) if key not in self._pages]
         if not missing:
+            self.desk.prepare()  # not before: it would take the processors from the pages' imports
             self.ready.emit()
             return
         self.page(missing[0])
@@ -197,7 +198,8 @@ class MainWindow(QMainWindow):
         whole = QWidget()
         whole.setLayout(column)
         # Qt makes the native window anew when its first OpenGL widget comes; one that nobody sees comes now.
-        QOpenGLWidget(whole).setGeometry(0, 0, 1, 1)
+        if QGuiApplication.platformName() != "offscreen":
+            QOpenGLWidget(whole).setGeometry(0, 0, 1, 1)
         self.setCentralWidget(whole)
 
     def _connect(self) -> None:

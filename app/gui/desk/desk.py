@@ -73,9 +73,9 @@ class Desk(QObject):
         return True
 
     def prepare(self) -> None:
-        """Start what takes its time, once the window is on the screen."""
-        self.cell.restore()
+        """Start the processes, so that the first jobs need not wait for them."""
         self.session_host.open()
+        self.scan_host.open()
 
     def close(self) -> None:
         """End all work; nothing is left behind."""

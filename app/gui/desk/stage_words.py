@@ -13,6 +13,7 @@ def stage_words(stage: str) -> str:
         "scan": translate("Stage", "Taking views"),
         "reconstruction": translate("Stage", "Reconstructing the surface"),
         "quality": translate("Stage", "Judging the scan"),
+        "looking again": translate("Stage", "Looking where to look again"),
         "collision": translate("Stage", "Making a body for the physics"),
         "containability": translate("Stage", "Dropping candies"),
         "pouring": translate("Stage", "Imagining pours"),

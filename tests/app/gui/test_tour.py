@@ -56,7 +56,6 @@ def test_a_newcomer_pours_into_the_mug_and_the_window_never_stalls(fresh_window,
 @pytest.mark.slow
 def test_the_headless_check_passes_and_leaves_nothing_behind(tmp_path):
     environment = os.environ | {"TMPDIR": str(tmp_path)}
-    before = {process.pid for process in psutil.process_iter()}
     done = subprocess.run(
         [sys.executable, "-m", "app.cli", "--headless-check"],
         env=environment,
@@ -69,8 +68,8 @@ def test_the_headless_check_passes_and_leaves_nothing_behind(tmp_path):
     assert "candies were spilled" in done.stdout.splitlines()[-1]
     left = [
         process
-        for process in psutil.process_iter(["cmdline"])
-        if process.pid not in before and "spawn_main" in " ".join(process.info["cmdline"] or [])
+        for process in psutil.process_iter(["environ"])
+        if (process.info["environ"] or {}).get("TMPDIR") == str(tmp_path)
     ]
     assert left == []
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith("poursight-check")] == []

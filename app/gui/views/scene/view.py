@@ -20,7 +20,7 @@ from app.gui.views.scene.parts import Layer
 from app.gui.views.scene.smooth_buffer import SmoothBuffer
 from core.geometry import FloatArray
 
-_STILL_MS = 150
+_STILL_MS = 300
 _MOST_SMOOTH_TRIANGLES = 60_000
 _SOFTWARE = (b"llvmpipe", b"softpipe", b"swrast", b"SwiftShader")
 
