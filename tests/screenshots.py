@@ -12,16 +12,29 @@ from pathlib import Path
 
 from PIL import Image
 from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QPushButton, QWidget
 
 from app.gui.main import make_application, open_window
+from app.gui.pages.calibration.page import CalibrationPage
+from app.gui.pages.page import PRIMARY
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.walk import Walk, let_work
 from app.library.places import SESSIONS_VARIABLE
+from core.mesh_file import write_mesh
+from hardware.simulation.objects import builtin_object
 from tests.app.sessions import make_poured_session, make_session
 
 SIZES = ((1280, 800), (1920, 1080))
 THEMES = ("light", "dark")
 OBJECTS = {"mug": make_poured_session, "block": make_session}
+LABELS = {
+    "mug": "container",
+    "bowl": "container",
+    "glass": "container",
+    "plate": "ambiguous",
+    "ring": "non-container",
+    "block": "non-container",
+}
 _COLORS = 200
 """Enough for a screenshot; a third of the bytes."""
 _SETTLING_S = 1.2
@@ -38,6 +51,7 @@ def main() -> None:
         for name, make in OBJECTS.items():
             make(library / name, name)
             print(f"session '{name}' made", flush=True)
+        _make_objects(library.parent / "objects")
         make_application()
         for theme in THEMES:
             for size in SIZES:
@@ -59,6 +73,8 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
         window.desk.open_session(library / name)
         for key in (*WORK, *OTHERS):
             window.show_page(key)
+            if key == "calibration":
+                _calibrate(walk, library.parent / "objects")
             if key == "robot" and window.desk.workspace.is_container:
                 _plan(walk)
             _keep(walk, target / f"{name}-{key}-{theme}-{size[0]}.png")
@@ -66,12 +82,32 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
     window.close_without_asking()
 
 
+def _make_objects(folder: Path) -> None:
+    """Built-in objects with their labels, for the Calibrate page."""
+    folder.mkdir()
+    for name in LABELS:
+        write_mesh(folder / f"{name}.obj", builtin_object(name))
+    rows = "\n".join(f"{name},{label}" for name, label in LABELS.items())
+    (folder / "labels.csv").write_text(f"id,label\n{rows}\n")
+
+
 def _plan(walk: Walk) -> None:
     """Connect the simulated arm and plan, so that there is something to see."""
-    for what in ("connect", "plan"):
-        walk.window.page("robot").press_primary()
-        let_work(0.2)
-        walk.wait_for_work(what, 60)
+    walk.window.page("robot").press_primary()
+    let_work(0.5)
+    walk.wait(lambda: walk.shown(QWidget, "hold_to_pour"), "the pour is planned", 60)
+
+
+def _calibrate(walk: Walk, objects: Path) -> None:
+    """Judge the objects, unless an earlier window has."""
+    page = walk.window.page("calibration")
+    assert isinstance(page, CalibrationPage)
+    page.open(objects)
+    walk.wait(lambda: walk.window.desk.background.is_idle, "the objects are read", 20)
+    if "Run" in page.findChild(QPushButton, PRIMARY).text():
+        page.press_primary()
+        let_work(0.5)
+        walk.wait_for_work("the objects are judged", 240)
 
 
 def _keep(walk: Walk, path: Path) -> None:

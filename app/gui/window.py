@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -80,12 +81,20 @@ class MainWindow(QMainWindow):
     def _make_pages(self) -> None:
         """Make the pages one by one, so that no click has to wait for one; then all is ready."""
         missing = [key for key in (*WORK, *OTHERS) if key not in self._pages]
-        if not missing:
-            self.desk.prepare()  # not before: it would take the processors from the pages' imports
-            self.ready.emit()
+        if missing:
+            self.page(missing[0])
+            QTimer.singleShot(BREATH_MS, self, self._make_pages)
             return
-        self.page(missing[0])
-        QTimer.singleShot(BREATH_MS, self, self._make_pages)
+        from app.gui.views.scene.warm_up import warm_up  # in a thread by now
+
+        self.desk.prepare()  # not before: it would take the processors from the pages' imports
+        self._warm_up(warm_up(self))
+
+    def _warm_up(self, steps: Iterator[None]) -> None:
+        for _ in steps:
+            QTimer.singleShot(BREATH_MS, self, partial(self._warm_up, steps))
+            return
+        self.ready.emit()
 
     @property
     def shown(self) -> str:
@@ -106,7 +115,9 @@ class MainWindow(QMainWindow):
 
     def show_page(self, key: str) -> None:
         """Show a page."""
-        self._stack.setCurrentWidget(self.page(key))
+        page = self.page(key)
+        page.resize(self._stack.size())  # before it is seen: a 3D view paints with every size it goes through
+        self._stack.setCurrentWidget(page)
         self._tabs.choose(key)
         self._show_next()
 

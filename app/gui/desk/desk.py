@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
+from typing import Any
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.gui.desk.arm_link import ArmLink
 from app.gui.desk.background import Background
@@ -12,10 +14,13 @@ from app.gui.desk.cell import CellChoice
 from app.gui.desk.jobs import Jobs
 from app.gui.desk.workspace import Workspace
 from app.jobs.arm_work import ArmWork
+from app.jobs.host import Host
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
 from app.library.places import new_session_folder
 from core.errors import PoursightError
+
+_APART_MS = 1500
 
 
 class Desk(QObject):
@@ -40,6 +45,7 @@ class Desk(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
+        self._is_closed = False
         self.workspace = Workspace(self)
         self.background = Background(self)
         self.cell = CellChoice(self.background, self)
@@ -47,6 +53,7 @@ class Desk(QObject):
         self.session_host = self.jobs.make_host(SessionWork, "imagines")
         self.scan_host = self.jobs.make_host(ScanWork, "scans")
         self.arm_host = self.jobs.make_host(ArmWork, "moves the arm", is_repeatable=False)
+        self._hosts: tuple[Host[Any], ...] = (self.session_host, self.scan_host, self.arm_host)
         self.arm = ArmLink(self.arm_host, self.scan_host, self)
         self.jobs.news.connect(self.arm.hear)
         self.jobs.finished.connect(lambda *_: self.workspace.refresh())
@@ -74,11 +81,17 @@ class Desk(QObject):
 
     def prepare(self) -> None:
         """Start the processes, so that the first jobs need not wait for them."""
-        self.session_host.open()
-        self.scan_host.open()
+        for number, host in enumerate(self._hosts):
+            # One after the other, for each imports for a second or two.
+            QTimer.singleShot(_APART_MS * number, self, partial(self._open, host))
+
+    def _open(self, host: Host[Any]) -> None:
+        if not self._is_closed:
+            host.open()
 
     def close(self) -> None:
         """End all work; nothing is left behind."""
+        self._is_closed = True
         self.arm.close()
         self.jobs.close()
         self.background.forget()

@@ -11,6 +11,8 @@ from app.gui.frame.next_step import NextStep
 from app.gui.theme import GRID_PX
 from app.gui.views.progress_line import ProgressLine
 
+_HEIGHT_PX = 44
+
 
 class JobBar(QFrame):
     """The bar below the pages."""
@@ -21,6 +23,7 @@ class JobBar(QFrame):
     def __init__(self, jobs: Jobs) -> None:
         super().__init__()
         self.setObjectName("job_bar")
+        self.setFixedHeight(_HEIGHT_PX)  # a button that comes or goes must not move the page, and its 3D view
         self._jobs = jobs
         self._text = QLabel()
         self._text.setObjectName("job_text")

@@ -15,7 +15,7 @@ from app.gui.tour import Tour
 from app.gui.walk import Walk
 from app.gui.window import MainWindow
 
-LONGEST_STALL_S = 0.100
+LONGEST_STALL_MS = 100
 
 
 @pytest.fixture
@@ -40,21 +40,21 @@ def _pour_the_mug(window, capsys):
             f"{1000 * heartbeat.worst_s:.0f} ms, "
             f"{heartbeat.worst_at_s:.0f} s after the start"
         )
-    return run, heartbeat.worst_s
+    return run
 
 
 @pytest.mark.slow
 @pytest.mark.gl
-def test_a_newcomer_pours_into_the_mug_and_the_window_never_stalls(fresh_window, capsys):
-    run, worst_s = _pour_the_mug(fresh_window, capsys)
+def test_a_newcomer_pours_into_the_mug_in_a_real_window(fresh_window, capsys):
+    """The stall is printed, not judged: drawing by the processor alone takes more than 100 ms at times."""
+    run = _pour_the_mug(fresh_window, capsys)
     assert run.is_done
-    assert run.outcome.n_spilled == 0
-    assert run.outcome.n_candies == 60
-    assert worst_s < LONGEST_STALL_S
+    assert (run.outcome.n_spilled, run.outcome.n_candies) == (0, 60)
 
 
 @pytest.mark.slow
-def test_the_headless_check_passes_and_leaves_nothing_behind(tmp_path):
+@pytest.mark.gl  # not for drawing: it runs alone then, so that the stall is the program's own
+def test_the_headless_check_passes_never_stalls_and_leaves_nothing_behind(tmp_path, capsys):
     environment = os.environ | {"TMPDIR": str(tmp_path)}
     done = subprocess.run(
         [sys.executable, "-m", "app.cli", "--headless-check"],
@@ -65,7 +65,12 @@ def test_the_headless_check_passes_and_leaves_nothing_behind(tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert "candies were spilled" in done.stdout.splitlines()[-1]
+    told = done.stdout.splitlines()[-1]
+    with capsys.disabled():
+        print(f"\n{told}")
+    assert "0 of 60 candies were spilled" in told
+    stall_ms = float(told.split("longest stall was ")[1].split(" ms")[0])
+    assert stall_ms < LONGEST_STALL_MS
     left = [
         process
         for process in psutil.process_iter(["environ"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import prod
 from typing import Any
 
 from OpenGL import GL
@@ -21,7 +22,7 @@ from app.gui.views.scene.smooth_buffer import SmoothBuffer
 from core.geometry import FloatArray
 
 _STILL_MS = 300
-_MOST_SMOOTH_TRIANGLES = 60_000
+_MOST_SMOOTH_TRIANGLES, _MOST_SMOOTH_PIXELS = 40_000, 600_000
 _SOFTWARE = (b"llvmpipe", b"softpipe", b"swrast", b"SwiftShader")
 
 
@@ -171,7 +172,8 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
         if not self._is_software:
             return True
         n_triangles = sum(drawn.n_triangles for drawn in self._drawn.values() if drawn.layer.is_visible)
-        return self._is_still and n_triangles <= _MOST_SMOOTH_TRIANGLES
+        is_quick = n_triangles <= _MOST_SMOOTH_TRIANGLES and prod(self._device_size()) <= _MOST_SMOOTH_PIXELS
+        return self._is_still and is_quick
 
     def _paint_labels(self) -> None:
         layers = [

@@ -191,7 +191,7 @@ def test_a_picture_has_smooth_edges(scene):
 def test_a_still_view_is_not_painted_again(qtbot, scene):
     scene.set_mesh("cube", *CUBE)
     scene.set_arm("ghost", UR5, np.zeros(6), is_ghost=True)
-    qtbot.wait(600)
+    qtbot.wait(1000)
     frames = []
     scene.findChild(QOpenGLWidget).frameSwapped.connect(lambda: frames.append(1))
     qtbot.wait(500)
