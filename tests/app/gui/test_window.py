@@ -5,6 +5,7 @@ from __future__ import annotations
 import psutil
 import pytest
 from PySide6.QtCore import Qt, QTimer
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QMessageBox, QPushButton
 
 from app.gui.desk.memory import Memory
@@ -96,6 +97,17 @@ def test_stop_works_by_button_and_by_key_whatever_has_the_focus(window, qtbot):
     qtbot.keyClick(window, Qt.Key.Key_F12)
     assert pressed == [True, True]
     assert window.log.text.count("STOP was pressed.") == 2
+
+
+def test_stop_works_by_key_while_a_dialog_is_open(window, qtbot):
+    pressed = []
+    window.top_bar.stop.pressed.connect(lambda: pressed.append(True))
+    box = QMessageBox(window)
+    box.open()
+    qtbot.waitExposed(box)
+    QTest.keyClick(box.windowHandle(), Qt.Key.Key_F12)
+    assert pressed == [True]
+    box.close()
 
 
 def test_the_layout_and_the_session_are_remembered(window, mug_session, qtbot):
