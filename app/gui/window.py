@@ -59,6 +59,7 @@ class MainWindow(QMainWindow):
         self._failed_page: str | None = None
         self._asks_before_closing = True
         self._pages: dict[str, Page] = {}
+        self._laid_out: set[str] = set()
         self._stack = QStackedWidget()
         self._tabs = TabList(tuple(map(tab_facts, WORK)), tuple(map(tab_facts, OTHERS)))
         self.messages = MessageBar()
@@ -108,7 +109,6 @@ class MainWindow(QMainWindow):
             return self.welcome
         if key not in self._pages:
             page = make_page(key, self.desk)
-            self._restore_split(page)
             self._stack.addWidget(page)
             self._pages[key] = page
         return self._pages[key]
@@ -118,6 +118,9 @@ class MainWindow(QMainWindow):
         page = self.page(key)
         page.resize(self._stack.size())  # before it is seen: a 3D view paints with every size it goes through
         self._stack.setCurrentWidget(page)
+        if key not in self._laid_out:
+            self._laid_out.add(key)
+            self._restore_split(page)
         self._tabs.choose(key)
         self._show_next()
 
@@ -300,14 +303,14 @@ class MainWindow(QMainWindow):
         split = page.findChild(SplitView)
         sizes = self.memory.split(page.KEY)
         if split is not None and sizes is not None:
-            # The page has its size only when it is laid out; before, sizes would be scaled from nothing.
+            # A page has its size only when it was laid out; before, sizes would be scaled from nothing.
             QTimer.singleShot(0, split, lambda: split.setSizes(sizes))
 
     def _keep_layout(self) -> None:
         self.memory.geometry = self.saveGeometry()
         for key, page in self._pages.items():
             split = page.findChild(SplitView)
-            if split is not None and page.isVisibleTo(self):
+            if split is not None and key in self._laid_out:  # others never had a size of their own
                 self.memory.keep_split(key, split.sizes())
 
 

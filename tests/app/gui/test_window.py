@@ -13,8 +13,10 @@ from app.gui.frame.chip import Chip
 from app.gui.frame.message_bar import MessageBar
 from app.gui.frame.shortcuts import ShortcutOverview, actions_with_keys
 from app.gui.frame.tab_list import Tab
+from app.gui.pages.page import SplitView
 from app.gui.palette import apply_theme
 from app.gui.theme import DARK, LIGHT, theme_of
+from app.gui.window import MainWindow
 from app.jobs.messages import FailureKind
 from app.jobs.session_work import SessionWork
 
@@ -118,6 +120,24 @@ def test_the_layout_and_the_session_are_remembered(window, mug_session, qtbot):
     window.close_without_asking()
     assert not Memory().was_cut_off
     assert Memory().geometry is not None
+
+
+def test_the_width_of_a_side_panel_is_remembered_from_window_to_window(window, qtbot):
+    window.show_page("history")
+    split = window.page("history").findChild(SplitView)
+    qtbot.waitUntil(lambda: split.width() > 800)
+    split.setSizes([split.width() - 500, 500])
+    width = split.sizes()[1]
+    assert width > 450
+    window.close_without_asking()
+    second = MainWindow(Memory())
+    qtbot.addWidget(second)
+    second.show()
+    second.page("history")  # made, but not shown yet, as the window does at its start
+    second.show_page("history")
+    again = second.page("history").findChild(SplitView)
+    qtbot.waitUntil(lambda: abs(again.sizes()[1] - width) <= 1)
+    second.close_without_asking()
 
 
 def test_after_a_kill_the_next_start_offers_the_session(window, mug_session, qtbot):
