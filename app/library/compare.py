@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from app.library.stages import STAGES, current_records
+from app.library.stages import current_records
 from app.library.summary import PourScore, SessionSummary, summarize
 from app.remembered import remembered_parameters
 from core.errors import SessionError
@@ -17,6 +17,7 @@ from core.files import read_json
 from core.mesh import TriangleMesh
 from core.mesh_topology import topology
 from core.parameters import Parameters, describe, difference
+from core.pipeline.needs import STAGES
 from core.ply import read_ply
 from core.session import StageRecord
 

@@ -5,20 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from core.pipeline.needs import STAGES
 from core.session import StageRecord
-
-STAGES = (
-    "scan",
-    "mesh",
-    "reconstruction",
-    "quality",
-    "collision",
-    "containability",
-    "pouring",
-    "motion",
-    "evidence",
-)
-"""In the order of the work: none is made from a later one."""
 
 
 def current_records(session: Path) -> dict[str, StageRecord]:

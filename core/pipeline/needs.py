@@ -12,6 +12,17 @@ from core.session import Session
 
 GIVEN = ("scan", "mesh")
 """What comes from outside; a session holds one of the two."""
+STAGES = (
+    *GIVEN,
+    "reconstruction",
+    "quality",
+    "collision",
+    "containability",
+    "pouring",
+    "motion",
+    "evidence",
+)
+"""In the order of the work: none is made from a later one."""
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from core.imagination.rendering.evidence import Evidence
 from core.mesh import TriangleMesh
 from core.motion.pour.choosing import PourMotions
 from core.parameters import Parameters
+from core.pipeline.needs import STAGES
 from core.quality import ScanQuality
 from core.reconstruction import Reconstruction
 from core.report import Media, ReportContent
@@ -29,17 +30,6 @@ _CAPTIONS = {
     "drop.mp4": "The drop and the perturbations",
     "pour.mp4": "The chosen pour",
 }
-_STAGES = (
-    "scan",
-    "mesh",
-    "reconstruction",
-    "quality",
-    "collision",
-    "containability",
-    "pouring",
-    "motion",
-    "evidence",
-)
 
 
 def gather(
@@ -57,7 +47,7 @@ def gather(
     """Put together everything the report shows."""
     named = {_CAPTIONS[name]: evidence.files[name] for name in _CAPTIONS if name in evidence.files}
     films = {_CAPTIONS[name] for name in evidence.files if name.endswith(".mp4")}
-    records = {stage: session.record(stage) for stage in _STAGES}
+    records = {stage: session.record(stage) for stage in STAGES}
     made = {stage: record for stage, record in records.items() if record is not None}
     return ReportContent(
         name=session.name,

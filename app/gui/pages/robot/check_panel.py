@@ -8,9 +8,10 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox
 
 from app.gui.pages.fact_grid import FactGrid
-from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.panel import Panel
 from app.gui.pages.robot.words import checks, minutes_words, plan_facts
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import say, text_label
 from app.jobs.arm_news import PlannedPour
 
 
@@ -26,15 +27,15 @@ class CheckPanel(Panel):
     def __init__(self) -> None:
         super().__init__("check_panel", self.tr("Check, then hold to pour"))
         self._number = 0
-        self._note = label("plan_note", "muted")
+        self._note = text_label("plan_note", "muted")
         self._facts = FactGrid("plan_facts")
         self._checks: tuple[QCheckBox, ...] = ()
-        self._rehearsal = label("rehearsal", "muted")
-        self._expiry = label("plan_expiry", "muted")
-        self._reason = label("hold_reason", "attention")
+        self._rehearsal = text_label("rehearsal", "muted")
+        self._expiry = text_label("plan_expiry", "muted")
+        self._reason = text_label("hold_reason", "attention")
         for one in (self._facts, self._note):
             self.column.addWidget(one)
-        self.column.addWidget(label("checks_heading", "heading", self.tr("I have seen to it:")))
+        self.column.addWidget(text_label("checks_heading", "heading", self.tr("I have seen to it:")))
         self._checks = tuple(self._check(name) for name, *_ in checks(0))
         for one in (self._rehearsal, self._expiry, self._reason):
             self.column.addWidget(one)

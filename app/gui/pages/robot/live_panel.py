@@ -6,8 +6,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QProgressBar
 
 from app.gui.pages.robot.motion import ShownMotion
-from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.panel import Panel
 from app.gui.pages.robot.words import MM, move_words, progress_words
+from app.gui.views.labels import say, text_label
 from app.gui.views.painting import tabular
 from app.jobs.arm_news import MoveProgress
 
@@ -19,7 +20,7 @@ class LivePanel(Panel):
 
     def __init__(self) -> None:
         super().__init__("live_panel", "")
-        self._move = label("live_move")
+        self._move = text_label("live_move")
         self._move.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._move.setMinimumHeight(2 * self._move.fontMetrics().height())  # nothing below jumps
         self._bar = QProgressBar()
@@ -27,15 +28,15 @@ class LivePanel(Panel):
         self._bar.setAccessibleName(self.tr("How much of the motion is done"))
         self._bar.setRange(0, _STEPS)
         self._bar.setTextVisible(False)
-        self._left = label("live_left", "heading")
+        self._left = text_label("live_left", "heading")
         self._left.setFont(tabular(self.font()))
-        self._pivot = label("live_pivot", "muted")
+        self._pivot = text_label("live_pivot", "muted")
         self._pivot.setFont(tabular(self.font()))
         kept = self._pivot.sizePolicy()
         kept.setRetainSizeWhenHidden(True)
         self._pivot.setSizePolicy(kept)
         self._pivot.setToolTip(self.tr("By where the controller says the joints are"))
-        self._stop = label(
+        self._stop = text_label(
             "live_stop",
             "muted",
             self.tr("STOP, or its key F12, stops the arm at once; it then stands where it is."),

@@ -5,8 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QLineEdit, QPushButton
 
-from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.panel import Panel
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import say, text_label
 from app.gui.views.painting import tabular
 from core.session.pour_runs import Outcome, PourRun
 
@@ -28,12 +29,12 @@ class OutcomePanel(Panel):
         self._n_candies = 0
         self._spilled: int | None = None
         self._before: Outcome | None = None
-        self._how = label("outcome_how", "muted")
-        self._question = label("outcome_question", "heading", self.tr("Spilled candies"))
+        self._how = text_label("outcome_how", "muted")
+        self._question = text_label("outcome_question", "heading", self.tr("Spilled candies"))
         self._number = QLabel()
         self._number.setObjectName("spilled")
         self._number.setFont(tabular(self.font(), _NUMBER_POINTS, bold=True))
-        self._of = label("outcome_of", "muted")
+        self._of = text_label("outcome_of", "muted")
         self._less = self._big_button("spilled_less", "\N{MINUS SIGN}", self.tr("One less was spilled"), -1)
         self._more = self._big_button("spilled_more", "+", self.tr("One more was spilled"), +1)
         self._not_counted = QCheckBox(self.tr("Not counted"))
@@ -44,7 +45,7 @@ class OutcomePanel(Panel):
         self._remarks.setAccessibleName(self.tr("Remarks"))
         self._remarks.setPlaceholderText(self.tr("Remarks, such as: one rolled off"))
         self._remarks.textEdited.connect(lambda _: self.edited.emit())
-        self._failure = label("outcome_failure", "failed")
+        self._failure = text_label("outcome_failure", "failed")
         self._build()
 
     def _build(self) -> None:

@@ -2,26 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.theme import GRID_PX
-
-
-def label(name: str, role: str = "", text: str = "") -> QLabel:
-    """Return a label that breaks its lines."""
-    made = QLabel(text)
-    made.setObjectName(name)
-    made.setWordWrap(True)
-    if role:
-        made.setProperty("role", role)
-    return made
-
-
-def say(of: QLabel, text: str) -> None:
-    """Let a label say something, or be away where there is nothing to say."""
-    if text != of.text():
-        of.setText(text)
-    of.setVisible(bool(text))
+from app.gui.views.labels import text_label
 
 
 class Panel(QWidget):
@@ -35,7 +19,7 @@ class Panel(QWidget):
     def __init__(self, name: str, heading: str) -> None:
         super().__init__()
         self.setObjectName(name)
-        self.heading = label(f"{name}_heading", "verdict", heading)
+        self.heading = text_label(f"{name}_heading", "verdict", heading)
         self.column = QVBoxLayout(self)
         self.column.setContentsMargins(0, 0, 0, 0)
         self.column.setSpacing(GRID_PX)

@@ -8,9 +8,10 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 from typing_extensions import override
 
 from app.gui.pages.robot.discs import DiscState, paint_disc, state_of
-from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.panel import Panel
 from app.gui.pages.robot.steps import Step
 from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.labels import say, text_label
 
 _DISC_PX = 24
 
@@ -26,8 +27,8 @@ class RecoveryPanel(Panel):
 
     def __init__(self) -> None:
         super().__init__("recovery_panel", self.tr("The arm was stopped"))
-        self._what = label("recovery_what", "attention")
-        self._failure = label("recovery_failure", "failed")
+        self._what = text_label("recovery_what", "attention")
+        self._failure = text_label("recovery_failure", "failed")
         self.column.addWidget(self._what)
         self._steps = (
             _GuideStep(1, self.tr("Look what stopped it, and put that right.")),
@@ -78,7 +79,7 @@ class _GuideStep(QWidget):
         super().__init__()
         self.setObjectName(f"guide_{number}")
         self._disc = _Disc(number)
-        self._text = label(f"guide_text_{number}", "", text)
+        self._text = text_label(f"guide_text_{number}", "", text)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(GRID_PX)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.panel import Panel
+from app.gui.views.labels import say, text_label
 
 if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
@@ -15,9 +16,9 @@ class StartPanel(Panel):
 
     def __init__(self) -> None:
         super().__init__("start_panel", "")
-        self._text = label("start_text")
-        self._note = label("start_note", "attention")
-        self._failure = label("start_failure", "failed")
+        self._text = text_label("start_text")
+        self._note = text_label("start_note", "attention")
+        self._failure = text_label("start_failure", "failed")
         for one in (self._note, self._failure, self._text):
             self.column.addWidget(one)
 

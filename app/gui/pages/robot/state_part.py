@@ -8,10 +8,11 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QWidget
 
 from app.gui.pages.fact_grid import Fact
-from app.gui.pages.robot.panel import Panel, label, say
+from app.gui.pages.robot.panel import Panel
 from app.gui.pages.robot.words import state_facts
 from app.gui.theme import GRID_PX
 from app.gui.views.hold_button import HoldButton
+from app.gui.views.labels import say, text_label
 from app.gui.views.painting import tabular
 from app.jobs.arm_news import ArmConnected, ArmStatus
 
@@ -32,7 +33,7 @@ class StatePart(Panel):
         self.heading.setProperty("role", "heading")
         self._is_closed = False
         self._facts = _FactPairs()
-        self._silence = label("arm_silence", "attention")
+        self._silence = text_label("arm_silence", "attention")
         self._leave = self._link(
             "disconnect", self.tr("Disconnect"), self.tr("Let the arm go; it stays as it is")
         )
@@ -42,7 +43,7 @@ class StatePart(Panel):
             self.tr("Open or close the gripper of the standing arm"),
         )
         self._unfold.setCheckable(True)
-        self._warning = label(
+        self._warning = text_label(
             "gripper_warning", "muted", self.tr("Keep your fingers out. What it holds falls when it opens.")
         )
         self._hold = HoldButton("", hold_s=1.0)
