@@ -174,8 +174,8 @@ class MainWindow(QMainWindow):
             event.ignore()
             return
         self._keep_layout()
-        self.memory.keep_session(None)
         self.desk.close()
+        self.memory.keep_session(None)  # only now: a kill while the work ends is one, too
         self._warming.wait()
         super().closeEvent(event)
 
