@@ -35,6 +35,7 @@ from hardware.errors import (
     RobotStopped,
     RobotUnreachable,
 )
+from hardware.realtime import take_precedence
 from hardware.robots.ur.mailbox import FIELDS, RUNTIME_PLAYING, StateMailbox
 from hardware.robots.ur.messages import Connected, Ended, Reply, Request, Setup, Started
 from hardware.robots.ur.motions import Following, JointMoves, Motion
@@ -60,6 +61,7 @@ def serve(setup: Setup, connection: Connection, mailbox: StateMailbox) -> NoRetu
     # A constructor that hangs keeps Python from running at all; this signal ends the process all the same.
     signal.alarm(_HANGS_S)
     _be_quiet()
+    take_precedence()
     Thread(target=_end_with_parent, daemon=True).start()
     connection.send(Started())
     try:

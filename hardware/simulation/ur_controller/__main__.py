@@ -14,6 +14,7 @@ import threading
 import time
 
 from core.errors import PoursightError
+from hardware.realtime import take_precedence
 from hardware.simulation.ur_controller.identity import identity
 from hardware.simulation.ur_controller.server import ControllerServer, Wish
 
@@ -40,6 +41,7 @@ def _end_with_parent() -> None:
 def main() -> int:
     """Serve what the first argument wishes, as JSON; print the address, or why not."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in a terminal is the parent's to answer
+    take_precedence()  # a controller is a computer of its own: what else runs here must not slow it down
     _end_with_parent()
     wish = json.loads(sys.argv[1])
     try:
