@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -63,10 +64,25 @@ def open_window(application: QApplication) -> MainWindow:
     window.setMenuBar(WindowActions(window).menus)
     if memory.geometry is not None:
         window.restoreGeometry(memory.geometry)
+    _collect_once_ready(window)
     window.show()
     QTimer.singleShot(0, window.begin)
     window.offer_cut_off_session()
     return window
+
+
+def _collect_once_ready(window: MainWindow) -> None:
+    """Look for garbage only when all is imported, and never again in what is there by then.
+
+    It is much and stays for good, and to go through all of it stops every thread for a tenth of a second.
+    """
+
+    def collect() -> None:
+        gc.freeze()
+        gc.enable()
+
+    gc.disable()
+    window.ready.connect(collect)
 
 
 def run() -> int:

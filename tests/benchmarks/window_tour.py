@@ -26,7 +26,8 @@ def main() -> None:
         print(run.outcome.sentence if run.outcome is not None else run.sentence)
         print(
             f"{walk.clicks} clicks; longest stall {1000 * heartbeat.worst_s:.0f} ms, "
-            f"{heartbeat.worst_at_s:.0f} s after the start"
+            f"{heartbeat.worst_at_s:.0f} s after the start, "
+            f"{1000 * heartbeat.worst_own_s:.0f} ms without what it waited for processor and disk"
         )
         window.close_without_asking()
 
