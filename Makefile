@@ -1,7 +1,7 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test setup setup-test lint unit bench accuracy judgement collision-table looking-again pose-errors pour-plans pour-faults pour-soak scene-speed window-start window-tour window-kills screenshots clean
+.PHONY: run test setup setup-test lint unit bench accuracy choices evaluation-cost judgement capacity holding amounts collision-table looking-again pose-errors pour-plans pour-faults pour-soak scene-speed window-start window-tour window-kills screenshots clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -31,8 +31,23 @@ bench: setup
 accuracy: setup
 	.venv/bin/python -m tests.benchmarks.accuracy
 
+choices: setup
+	.venv/bin/python -m tests.benchmarks.choices
+
+evaluation-cost: setup
+	.venv/bin/python -m tests.benchmarks.evaluation_cost
+
 judgement: setup
-	.venv/bin/python -m tests.benchmarks.judgement build/judgement
+	.venv/bin/poursight evaluate ../shared/data/objects --out build/judgement
+
+capacity: setup
+	.venv/bin/python -m tests.benchmarks.capacity
+
+holding: setup
+	.venv/bin/python -m tests.benchmarks.holding
+
+amounts: setup
+	.venv/bin/python -m tests.benchmarks.amounts
 
 collision-table: setup
 	.venv/bin/python -m tests.benchmarks.collision_table

@@ -1,7 +1,7 @@
 """What is kept of a calibration: which objects, which sets of parameters, and every verdict. No Qt here.
 
 It lies in the user's data folder: one folder for each folder of objects, in it `sets.json` and, for each set
-of parameters that decides Omega, a folder with one file a verdict.
+of parameters that decides the score, a folder with one file a verdict.
 """
 
 from __future__ import annotations
@@ -13,15 +13,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from string import ascii_uppercase
+from typing import Any
 
 from platformdirs import user_data_path
 
 from app.jobs.calibration_work import verdict_file
 from app.presets import APPLICATION
 from core.errors import PoursightError
+from core.evaluation.fitting.provenance import Provenance
 from core.evaluation.labels import LabelledObject, read_labels
 from core.evaluation.scores import Score, is_right, score
-from core.evaluation.verdicts import ObjectVerdict, judging_key, mesh_mark
+from core.evaluation.trials import Measure, measure_word
+from core.evaluation.verdicts import ObjectVerdict, judging_key, measure_by, mesh_mark
 from core.files import read_json, write_json
 from core.parameters import Parameters, apply_settings, difference
 from core.session import explained
@@ -31,10 +34,19 @@ SETS_FILE, LAST_FILE = "sets.json", "last.json"
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """A column of the table: a name such as "Set A", and its parameters."""
+    """A column of the table.
+
+    Attributes:
+        name: such as "Set A".
+        parameters: by which it judges.
+        named: dotted names of those that were fitted; empty if none was.
+        provenance: where fitted ones come from; none of those that somebody chose.
+    """
 
     name: str
     parameters: Parameters
+    named: tuple[str, ...] = ()
+    provenance: Provenance | None = None
 
     @property
     def key(self) -> str:
@@ -42,9 +54,14 @@ class ParameterSet:
         return judging_key(self.parameters)
 
     @property
+    def measure(self) -> Measure:
+        """What it judges by."""
+        return measure_by(self.parameters)
+
+    @property
     def threshold(self) -> float:
-        """Omega_thr."""
-        return self.parameters.containability.omega_threshold
+        """Of what it judges by."""
+        return self.parameters.containability.deciding_threshold
 
 
 @dataclass(frozen=True)
@@ -82,15 +99,15 @@ class Board:
         return score(self.objects, self.of(one), one.threshold)
 
     def undecided(self, one: ParameterSet) -> tuple[LabelledObject, ...]:
-        """Return the objects that have no Omega by a set yet."""
+        """Return the objects that have no score by a set yet."""
         found = self.of(one)
         return tuple(
-            each for each in self.objects if each.name not in found or found[each.name].omega is None
+            each for each in self.objects if each.name not in found or found[each.name].score is None
         )
 
     def set_of(self, parameters: Parameters) -> ParameterSet | None:
         """Return the set with these parameters, as far as they are judged by."""
-        wanted = judging_key(parameters), parameters.containability.omega_threshold
+        wanted = judging_key(parameters), parameters.containability.deciding_threshold
         return next((one for one in self.sets if (one.key, one.threshold) == wanted), None)
 
     def with_set(self, parameters: Parameters) -> tuple[Board, ParameterSet]:
@@ -100,6 +117,15 @@ class Board:
             return self, known
         new = ParameterSet(self._free_name(), parameters)
         return replace(self, sets=(*self.sets, new)), new
+
+    def with_fitted_set(
+        self, parameters: Parameters, named: tuple[str, ...], provenance: Provenance
+    ) -> tuple[Board, ParameterSet]:
+        """Return a board whose set with these parameters says where they come from, and that set."""
+        board, plain_set = self.with_set(parameters)
+        fitted = replace(plain_set, parameters=parameters, named=named, provenance=provenance)
+        sets = tuple(fitted if one == plain_set else one for one in board.sets)
+        return replace(board, sets=sets), fitted
 
     def without_set(self, name: str) -> Board:
         """Return a board without a column; its verdicts stay on the disk."""
@@ -146,7 +172,7 @@ def save_board(board: Board) -> None:
     Raises:
         SessionError: the user's data folder cannot be written.
     """
-    sets = [{"name": one.name, "parameters": _changes(one.parameters)} for one in board.sets]
+    sets = [_table(one) for one in board.sets]
     with explained(board.folder):
         board.folder.mkdir(parents=True, exist_ok=True)
         write_json(board.folder / SETS_FILE, {"objects": str(board.source), "sets": sets})
@@ -163,20 +189,49 @@ def last_source() -> Path | None:
 
 
 def csv_text(board: Board) -> str:
-    """Return the table: id, label, category, then Omega and whether it is right for each set."""
+    """Return the table: id, label, category, then for each set Omega, what decides, whether it is right."""
     out = io.StringIO()
     writer = csv.writer(out)
-    heads = [text for one in board.sets for text in (f"{one.name} omega", f"{one.name} right")]
+    heads = [f"{one.name} {head}" for one in board.sets for head in _heads(one)]
     writer.writerow(["id", "label", "category", *heads])
     for each in board.objects:
         row: list[object] = [each.name, each.label, each.category]
         for one in board.sets:
-            verdict = board.of(one).get(each.name)
-            omega = None if verdict is None else verdict.omega
-            right = None if omega is None else is_right(each.label, omega, one.threshold)
-            row += ["" if omega is None else omega, "" if right is None else int(right)]
+            row += _values(board, one, each)
         writer.writerow(row)
     return out.getvalue()
+
+
+def _heads(one: ParameterSet) -> tuple[str, ...]:
+    return ("omega", "right") if one.measure == "Omega" else ("omega", measure_word(one.measure), "right")
+
+
+def _values(board: Board, one: ParameterSet, each: LabelledObject) -> list[object]:
+    """What stands below `_heads` for an object; empty what is not known."""
+    verdict = board.of(one).get(each.name)
+    if verdict is None or verdict.score is None:
+        return [""] * len(_heads(one))
+    right = is_right(each.label, verdict.score, one.threshold)
+    scores = [verdict.omega] if one.measure == "Omega" else [verdict.omega, verdict.score]
+    return [*scores, "" if right is None else int(right)]
+
+
+def _table(one: ParameterSet) -> dict[str, object]:
+    table: dict[str, object] = {"name": one.name, "parameters": _changes(one.parameters)}
+    if one.provenance is not None:
+        table |= {"named": list(one.named), "provenance": one.provenance.to_table()}
+    return table
+
+
+def _set(row: Mapping[str, Any]) -> ParameterSet:
+    parameters = apply_settings(Parameters(), row["parameters"])
+    provenance = row.get("provenance")
+    return ParameterSet(
+        str(row["name"]),
+        parameters,
+        tuple(row.get("named", ())),
+        None if provenance is None else Provenance.from_table(provenance),
+    )
 
 
 def _changes(parameters: Parameters) -> dict[str, object]:
@@ -192,7 +247,7 @@ def _sets(path: Path) -> list[ParameterSet]:
     found = []
     for row in rows:
         try:
-            found.append(ParameterSet(str(row["name"]), apply_settings(Parameters(), row["parameters"])))
+            found.append(_set(row))
         except (PoursightError, KeyError, TypeError, AttributeError):
             continue
     return found

@@ -8,6 +8,17 @@ from typing import Annotated, Optional
 
 import typer
 
+from app.cli_evaluation import calibrate, cluster, compare, evaluate
+from app.cli_options import (
+    CellOption,
+    PourCellOption,
+    PresetOption,
+    SeedOption,
+    SessionArgument,
+    SessionOption,
+    SetOption,
+    WorkersOption,
+)
 from core.errors import PoursightError
 
 app = typer.Typer(
@@ -18,30 +29,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-SessionArgument = Annotated[Path, typer.Argument(metavar="SESSION", help="A session's folder.")]
-SessionOption = Annotated[Path, typer.Option("--session", metavar="DIR", help="The session's folder.")]
-CellOption = Annotated[
-    Optional[Path],  # noqa: UP045
-    typer.Option("--cell", metavar="FILE", help="The cell's file; by default the simulated cell."),
-]
-PourCellOption = Annotated[
-    Optional[Path],  # noqa: UP045
-    typer.Option("--cell", metavar="FILE", help="The cell's file; by default the cell of the scan."),
-]
-PresetOption = Annotated[
-    Optional[str],  # noqa: UP045 - typer reads it at run time
-    typer.Option("--preset", metavar="P", help="default, paper, authors, or a preset file."),
-]
-SetOption = Annotated[
-    Optional[list[str]],  # noqa: UP045
-    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; see 'poursight parameters'."),
-]
-SeedOption = Annotated[Optional[int], typer.Option("--seed", help="Seed of all randomness.")]  # noqa: UP045
-WorkersOption = Annotated[
-    Optional[int],  # noqa: UP045
-    typer.Option("--workers", min=1, max=256, help="Worker processes; by default one a processor."),
-]
 
 
 @app.callback()
@@ -160,12 +147,15 @@ def pour(
     session: SessionArgument,
     cell: PourCellOption = None,
     yes: Annotated[bool, typer.Option("--yes", help="Pour without asking.")] = False,
+    is_emptied: Annotated[
+        bool, typer.Option("--emptied", help="The object was emptied: begin with the first cup.")
+    ] = False,
     workers: WorkersOption = None,
 ) -> None:
     """Show the plan, ask, and let the arm pour; a stopped pour is backed off from and planned anew."""
     from app import commands
 
-    commands.pour(session, cell, yes, workers)
+    commands.pour(session, cell, yes, is_emptied, workers)
 
 
 @app.command()
@@ -271,6 +261,10 @@ def demo(
 
     out = out or Path("demo") / name
     commands.demo(name, out, commands.Choices(preset, settings or [], seed), workers)
+
+
+for _command in (evaluate, compare, cluster, calibrate):
+    app.command()(_command)
 
 
 @app.command()

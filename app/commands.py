@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,16 +13,20 @@ from typing import Any
 
 from app.answer import answer_table
 from app.listing import short
+from app.presets import named_preset
 from app.remembered import remember_parameters, remembered_parameters
 from app.scanning import ScanWishes, scan_object
 from app.terminal import TerminalReporter
 from core.errors import InputError, SessionError
 from core.files import write_json
+from core.imagination.amount.words import amount_text
+from core.imagination.holding.words import holding_sentence
 from core.imagination.imagine import WORKER_MODULE, Imagination
 from core.parameters import Parameters, apply_settings, difference, load_preset
 from core.pipeline.pipeline import Pipeline
-from core.report import pours_sentence, verdict_sentence
+from core.report import paper_verdict_sentence, pours_sentence, risk_sentence, verdict_sentence
 from core.session import Session
+from core.session.pour_runs import note_emptied
 from core.workers import WorkerPool
 
 
@@ -41,20 +45,30 @@ class Choices:
             InputError: an unknown preset or parameter, or a value out of its range.
         """
         preset, parameters = self._base(session)
-        settings: dict[str, Any] = {}
-        for text in self.settings:
-            name, equals, value = text.partition("=")
-            if not equals:
-                raise InputError(f"'--set {text}' lacks a value: write --set name=value.")
-            settings[name.strip()] = value.strip()
+        settings: dict[str, Any] = dict(named_values("--set", self.settings))
         if self.seed is not None:
             settings["seed"] = self.seed
         return preset, apply_settings(parameters, settings)
 
     def _base(self, session: Path) -> tuple[str, Parameters]:
         remembered = remembered_parameters(session) if self.preset is None else None
-        preset = self.preset or "default"
+        preset = named_preset(self.preset or "default")
         return remembered or (preset, load_preset(preset))
+
+
+def named_values(option: str, texts: Sequence[str]) -> dict[str, str]:
+    """Return what was given as `NAME=VALUE`, by name.
+
+    Raises:
+        InputError: one lacks its value.
+    """
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals:
+            raise InputError(f"'{option} {text}' lacks a value: write {option} name=value.")
+        found[name.strip()] = value.strip()
+    return found
 
 
 def import_scan(folder: Path, session_folder: Path) -> None:
@@ -133,12 +147,20 @@ def plan(session_folder: Path, cell_file: Path | None, workers: int | None) -> N
         pouring.plan(pipeline, cell_file)
 
 
-def pour(session_folder: Path, cell_file: Path | None, is_confirmed: bool, workers: int | None) -> None:
-    """Pour, after a confirmation."""
+def pour(
+    session_folder: Path,
+    cell_file: Path | None,
+    is_confirmed: bool,
+    is_emptied: bool,
+    workers: int | None,
+) -> None:
+    """Pour, after a confirmation; into an object that was emptied the first cup again."""
     from app import pouring
 
     face = TerminalReporter()
     with _working(session_folder, Choices(None, [], None), workers, existing=True, face=face) as pipeline:
+        if is_emptied:
+            note_emptied(pipeline.session.path)
         folder = pouring.pour(pipeline, None if is_confirmed else face, cell_file)
     print(f"Kept in {folder}.")
 
@@ -193,7 +215,17 @@ def _working(
 
 def _print_verdict(result: Imagination) -> None:
     print(verdict_sentence(result.containability))
+    if result.containability.verdict is not None:
+        print(paper_verdict_sentence(result.containability))
+    if result.holding is not None:
+        print(holding_sentence(result.holding))
+    if result.capacity is not None and result.capacity.explanation:
+        print(result.capacity.explanation)
+    if result.amount is not None and result.containability.is_open_container:
+        print(amount_text(result.amount))
     print(pours_sentence(result.containability, result.grid, result.choice))
+    if result.grid and result.risk and result.choice and result.paper_choice:
+        print(risk_sentence(result.grid, result.risk, result.choice, result.paper_choice))
 
 
 def _print_difference(preset: str, parameters: Parameters) -> None:

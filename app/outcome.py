@@ -6,10 +6,12 @@ from pathlib import Path
 
 from app.scanning import object_mesh
 from core.errors import InputError
+from core.imagination.amount.result import imagined_cups
 from core.mesh import TriangleMesh
 from core.motion.pour.plan import PourPlan
 from core.pipeline.pipeline import Pipeline
 from core.session import explained
+from core.session.cups import cup_of_run
 from core.session.pour_runs import Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings
 from hardware.cell.scene import ARMS
@@ -17,7 +19,8 @@ from hardware.pouring.pouring import PLAN_FOLDER
 from hardware.pouring.run_log import read_states
 from hardware.simulation.placing import place_on_platform, transform_mesh
 from hardware.simulation.pour_outcome.driven_path import driven_path
-from hardware.simulation.pour_outcome.outcome import simulate_outcome
+from hardware.simulation.pour_outcome.lying import NONE_LYING
+from hardware.simulation.pour_outcome.outcome import TableOutcome, simulate_outcome
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 from hardware.simulation.pour_outcome.table_world import PlatformBox
 
@@ -25,28 +28,36 @@ TABLE_FOLDER = "table"
 
 
 def simulated_outcome(pipeline: Pipeline, settings: CellSettings, folder: Path) -> Outcome:
-    """Drive the cup along the way the controller reported, over the true object, and count the candies."""
+    """Drive the cup along the way the controller reported, over the true object, and count the candies.
+
+    Of several cups, those poured before lie in the object.
+    """
     plan = PourPlan.load(folder / PLAN_FOLDER)
     states = read_states(folder, {move.name for move in plan.moves if move.holds_cup})
     T_flange_cup = settings.gripper.grasp_pose @ plan.T_grasp_cup
     path = driven_path(ARMS[settings.robot.model], states.times_s, states.joints_rad, T_flange_cup)
-    parameters, place = pipeline.parameters, settings.place
+    parameters, place = pipeline.poured_parameters(), settings.place
     mesh, remark = _true_mesh(pipeline, settings)
+    session = pipeline.session.path
+    cup = cup_of_run(session, folder, imagined_cups(session / "pouring") or (parameters.pouring.n_pour,))
+    lying = NONE_LYING if cup.before is None else TableOutcome.load(cup.before / TABLE_FOLDER).lying
     found = simulate_outcome(
         mesh,
         path,
         parameters.pouring.cup,
         place.table_height_m,
         PlatformBox(place.platform_min_m, place.platform_max_m, place.platform_height_m),
-        OutcomeSettings(n_candies=parameters.pouring.n_pour, seed=parameters.seed),
+        # Every cup has a packing and errors of its own.
+        OutcomeSettings(n_candies=cup.n_candies, seed=parameters.seed + len(lying.scales)),
         pipeline.pool,
         pipeline.reporter,
+        lying,
     )
     with explained(folder):
         (folder / TABLE_FOLDER).mkdir(exist_ok=True)
         found.save(folder / TABLE_FOLDER)
-    facts = {"n_in_object": found.n_in_object, "n_in_cup": found.n_in_cup}
-    return Outcome(found.n_candies, found.n_spilled, remark, is_simulated=True, facts=facts)
+    facts = {"n_in_object": found.n_in_object, "n_in_cup": found.n_in_cup, "n_before": len(lying.scales)}
+    return Outcome(cup.n_candies, found.n_spilled, remark, is_simulated=True, facts=facts)
 
 
 def enter_outcome(session: Path, spilled: int | None, remarks: str) -> Outcome:

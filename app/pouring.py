@@ -11,6 +11,8 @@ from app.choosing import refuse_unmakeable
 from app.motion_record import described_cell
 from app.terminal import TerminalReporter
 from core.errors import Cancelled, InputError, MotionError, StageError
+from core.imagination.amount.result import Amount, imagined_cups
+from core.imagination.amount.words import amount_text
 from core.imagination.results import PourGrid
 from core.motion.pour.cell import PourCell
 from core.motion.pour.choosing import PourMotions
@@ -18,6 +20,7 @@ from core.motion.pour.plan import PlannedMove, PourPlan
 from core.pipeline.pipeline import Pipeline
 from core.report import motion_sentence, operator_sentence, pours_sentence
 from core.session import Session
+from core.session.cups import Cup, next_cup
 from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings, open_arm, read_cell
@@ -41,6 +44,7 @@ class PreparedPour:
         grid: the imagined pours.
         motions: which of them the arm can make.
         target: the chosen one; none if the arm can make none.
+        amount: how many candies shall go in; none if it is not known what the object holds.
     """
 
     settings: CellSettings
@@ -48,13 +52,14 @@ class PreparedPour:
     grid: PourGrid
     motions: PourMotions
     target: PourTarget | None
+    amount: Amount | None
 
 
 def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
     """Imagine what is stale and judge which pours the arm of a cell can make.
 
     Raises:
-        StageError: the object is no open container.
+        StageError: the object is no open container, or more is to be poured than fits.
         MotionError: the arm cannot take the cup at all.
     """
     session = pipeline.session
@@ -65,11 +70,14 @@ def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
         )
     cell = pour_cell(settings)
     imagination = pipeline.imagination()
+    if imagination.amount is not None and imagination.amount.refusal:
+        raise StageError(f"Nothing is poured. {imagination.amount.refusal}")
     motions = pipeline.motion(cell, described_cell(settings))
     if motions is None or imagination.grid is None:
         said = pours_sentence(imagination.containability, imagination.grid, imagination.choice)
         raise StageError(f"There is no pour to make. {said}")
-    return PreparedPour(settings, cell, imagination.grid, motions, _target(pipeline, imagination, motions))
+    target = _target(pipeline, imagination, motions)
+    return PreparedPour(settings, cell, imagination.grid, motions, target, imagination.amount)
 
 
 def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
@@ -82,7 +90,9 @@ def plan(pipeline: Pipeline, cell_file: Path | None) -> None:
 
 
 def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path | None) -> Path:
-    """Plan, ask, pour; after a stop offer to back off and to pour anew. Returns the last run's folder.
+    """Plan, ask, pour, cup after cup; after a stop offer to back off and to pour anew.
+
+    Of several cups it begins with the first that was not poured yet. Returns the last run's folder.
 
     Args:
         pipeline: of the session.
@@ -95,28 +105,32 @@ def pour(pipeline: Pipeline, operator: TerminalReporter | None, cell_file: Path 
     task = prepare(pipeline, cell_of(pipeline.session, cell_file))
     target = _chosen(task)
     print(motion_sentence(task.motions, task.grid))
+    if task.amount is not None:
+        print(amount_text(task.amount))
+    cups = imagined_cups(pipeline.session.path / "pouring")
+    if len(cups) > 1 and operator is None and not task.settings.is_simulated:
+        raise InputError(
+            f"{len(cups)} cups are to be poured, and nobody would fill them: leave --yes out, or pour less."
+        )
     with open_arm(task.settings) as arm:
         pouring = Pouring(arm, task.cell, target, pipeline.session.path, pipeline.reporter)
         while True:
-            fresh = pouring.plan()
-            print("\n".join(plan_lines(fresh.plan, target.note)))
-            _confirm(operator, f"Let the {arm.robot.name} pour?")
-            try:
-                folder = pouring.carry_out(fresh)
-                break
-            except (DeviceError, Cancelled) as error:
-                if operator is None or not pouring.is_interrupted:
-                    raise
-                _recover(operator, pouring, error)
-    _keep_outcome(pipeline, operator, task.settings, folder)
-    return folder
+            cup = next_cup(pipeline.session.path, target.digest, cups)
+            folder = _pour_cup(pouring, operator, arm.robot.name, cup)
+            _keep_outcome(pipeline, operator, task.settings, folder, cup)
+            if cup.number == cup.n_cups:
+                return folder
 
 
 def was_poured(session: Session) -> bool:
-    """Whether a pour of what is imagined now was made already, and its outcome kept."""
+    """Whether what is imagined now was poured already, all cups of it, and the outcome kept."""
     record = session.record("pouring")
+    if record is None:
+        return False
     made = [run for run in pour_runs(session.path) if run.is_done and run.outcome is not None]
-    return any(record is not None and run.imagination == record.digest for run in made)
+    cups = imagined_cups(session.path / "pouring")
+    is_over = bool(cups) and next_cup(session.path, record.digest, cups).number == 1
+    return is_over and any(run.imagination == record.digest for run in made)
 
 
 def plan_lines(plan: PourPlan, note: str = "") -> list[str]:
@@ -160,7 +174,7 @@ def _target(pipeline: Pipeline, imagination: Imagination, motions: PourMotions) 
         choice.j,
         float(grid.theta_rad[choice.i]),
         grid.pivot_m[choice.i, choice.j],
-        pipeline.parameters.pouring,
+        pipeline.poured_parameters().pouring,
         record.digest,
         "" if operator is None else operator_sentence(operator, grid, motions.choice),
     )
@@ -174,6 +188,20 @@ def cell_of(session: Session, cell_file: Path | None) -> CellSettings:
     if record is not None and "cell" in record.parameters:
         return CellSettings.model_validate(record.parameters["cell"])
     return read_cell()
+
+
+def _pour_cup(pouring: Pouring, operator: TerminalReporter | None, robot: str, cup: Cup) -> Path:
+    """Plan, ask and pour until a pour is made; returns its run's folder."""
+    while True:
+        fresh = pouring.plan()
+        print("\n".join(plan_lines(fresh.plan, fresh.target.note)))
+        _confirm(operator, f"Let the {robot} pour{f' ({cup.words})' if cup.words else ''}?")
+        try:
+            return pouring.carry_out(fresh)
+        except (DeviceError, Cancelled) as error:
+            if operator is None or not pouring.is_interrupted:
+                raise
+            _recover(operator, pouring, error)
 
 
 def _confirm(operator: TerminalReporter | None, question: str) -> None:
@@ -207,7 +235,11 @@ def _recover(operator: TerminalReporter, pouring: Pouring, error: Exception) -> 
 
 
 def _keep_outcome(
-    pipeline: Pipeline, operator: TerminalReporter | None, settings: CellSettings, folder: Path
+    pipeline: Pipeline,
+    operator: TerminalReporter | None,
+    settings: CellSettings,
+    folder: Path,
+    cup: Cup,
 ) -> None:
     if settings.is_simulated:
         from app.outcome import simulated_outcome
@@ -217,8 +249,7 @@ def _keep_outcome(
         print(f"Count the spilled candies: poursight outcome {pipeline.session.path} --spilled N")
         return
     else:
-        n_pour = pipeline.parameters.pouring.n_pour
         spilled = operator.ask_number("How many candies were spilled (empty: not counted)?")
-        outcome = Outcome(n_pour, spilled, operator.ask_text("Remarks?"), is_simulated=False, facts={})
+        outcome = Outcome(cup.n_candies, spilled, operator.ask_text("Remarks?"), is_simulated=False, facts={})
     write_outcome(folder, outcome)
     print(outcome.sentence)

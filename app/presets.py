@@ -35,3 +35,11 @@ def preset_file(name: str) -> Path:
     with explained(folder):
         folder.mkdir(parents=True, exist_ok=True)
     return folder / f"{stem}.json"
+
+
+def named_preset(name: str) -> str:
+    """Return what `load_preset` takes for a name: the user's preset of that name, or the name as it is."""
+    if name in PRESET_NAMES or not name.strip():
+        return name
+    path = presets_folder() / f"{slug(name)}.json"
+    return str(path) if path.is_file() and not Path(name).is_file() else name

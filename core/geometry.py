@@ -74,3 +74,10 @@ def look_at(eye_m: npt.ArrayLike, target_m: npt.ArrayLike) -> FloatArray:
     right = np.cross(forward, up)
     right /= np.linalg.norm(right)
     return make_pose(np.column_stack([right, np.cross(forward, right), forward]), eye)
+
+
+def ellipsoid_inertia_kg_m2(mass_kg: float, diameter_m: float, height_m: float) -> FloatArray:
+    """Principal moments (3,) of a solid ellipsoid; Bullet would take those of a box around it."""
+    across_m, up_m = diameter_m / 2, height_m / 2
+    about_x = (across_m**2 + up_m**2) / 5
+    return mass_kg * np.array([about_x, about_x, 2 * across_m**2 / 5])

@@ -77,15 +77,20 @@ def join(parts: tuple[TriangleMesh, ...]) -> TriangleMesh:
 
 def is_convex(mesh: TriangleMesh) -> bool:
     """Whether a mesh is closed and fills its convex hull, up to the rounding of its file."""
-    from scipy.spatial import ConvexHull, QhullError
-
     if not topology(mesh).is_closed:
         return False
+    hull_m3 = hull_volume_m3(mesh)
+    return hull_m3 > 0 and mesh.volume_m3 >= CONVEX_SHARE * hull_m3
+
+
+def hull_volume_m3(mesh: TriangleMesh) -> float:
+    """Return the volume of a mesh's convex hull; zero if it is flat."""
+    from scipy.spatial import ConvexHull, QhullError
+
     try:
-        hull = ConvexHull(mesh.vertices_m)
+        return float(ConvexHull(mesh.vertices_m).volume)
     except (QhullError, ValueError):  # flat, or too few vertices
-        return False
-    return bool(mesh.volume_m3 >= CONVEX_SHARE * hull.volume)
+        return 0.0
 
 
 def _has_area(vertices_m: AnyArray, faces: AnyArray) -> BoolArray:

@@ -10,22 +10,20 @@ from __future__ import annotations
 import importlib
 import multiprocessing
 import os
-import signal
-import threading
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing.connection import wait as wait_for_handles
-from typing import Any, NoReturn
+from threading import Thread
+from typing import Any, Protocol
 
 from core.errors import Cancelled, WorkerError
 from core.progress import Reporter
+from core.worker_process import become_worker, children_deaf_to_interrupts
 
 _POLL_S = 0.05
 _GRACE_S = 0.5
+_LEAVE_S = 0.05
 _PROGRESS_SLOTS = 64
 
 
@@ -36,6 +34,35 @@ class Task:
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
     weight: float = 1.0
+
+
+class TaskRunner(Protocol):
+    """Runs tasks and hands their results back in order: a `WorkerPool`, or `RunHere`."""
+
+    def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
+        """Run all tasks and return their results in order."""
+        ...
+
+
+class RunHere:
+    """Runs tasks one after the other in this process, which should be a worker.
+
+    Many objects at once are many tasks already: what each of them computes needs no processes of its own.
+    """
+
+    def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
+        """Run all tasks and return their results in order.
+
+        Raises:
+            Cancelled: somebody asked to stop.
+            Exception: whatever the first failing task raised.
+        """
+        results = []
+        for index, task in enumerate(tasks):
+            reporter.raise_if_cancelled()
+            reporter.progress(stage, index, len(tasks))
+            results.append(task.function(*task.arguments))
+        return results
 
 
 @dataclass(frozen=True)
@@ -78,10 +105,16 @@ class WorkerPool:
         if self._executor is None:
             return
         executor, self._executor = self._executor, None
-        executor.shutdown(wait=False, cancel_futures=True)
+        # The executor's own thread is waited for: one that still closes its pipes when Python ends would be
+        # woken through a closed one, and that is a traceback on the terminal. It drops what was cancelled
+        # before the processes die, because it cannot mark that as failed.
+        closing = Thread(target=executor.shutdown, kwargs={"cancel_futures": True})
+        closing.start()
+        closing.join(_LEAVE_S)
         for process in self._processes:
             process.kill()
         self._processes = []
+        closing.join()
 
     def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
         """Run all tasks and return their results in order.
@@ -95,7 +128,7 @@ class WorkerPool:
         self._shared.fractions[:] = [0.0] * _PROGRESS_SLOTS
         executor = self._running()
         try:
-            with _interrupts_ignored_by_children():
+            with children_deaf_to_interrupts():
                 futures = [
                     executor.submit(_call, index if index < _PROGRESS_SLOTS else None, task)
                     for index, task in enumerate(tasks)
@@ -125,7 +158,7 @@ class WorkerPool:
                 self.workers, self._context, initializer=_initialize, initargs=(self._shared,)
             )
             self._children_before = before
-            with _interrupts_ignored_by_children():
+            with children_deaf_to_interrupts():
                 for _ in range(self.workers):
                     self._executor.submit(os.getpid)
                 self._remember_processes()
@@ -213,32 +246,6 @@ def _import_modules(modules: tuple[str, ...]) -> None:
 
 
 def _initialize(channel: _Channel) -> None:
-    """Prepare a worker: quiet on stdout, deaf to Ctrl-C, and gone when its parent is."""
     global _channel
     _channel = channel
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # PyBullet and its EGL plugin write to file descriptor 1 from C; people pipe what is printed there.
-    null = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(null, 1)
-    threading.Thread(target=_die_with_parent, daemon=True).start()
-
-
-def _die_with_parent() -> NoReturn:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        wait_for_handles([parent.sentinel])
-    time.sleep(0.1)
-    os._exit(1)
-
-
-@contextmanager
-def _interrupts_ignored_by_children() -> Iterator[None]:
-    """Let processes spawned inside inherit an ignored SIGINT: Ctrl-C reaches the whole terminal group."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, handler)
+    become_worker()

@@ -120,6 +120,7 @@ def _imagination(a: _Side, b: _Side) -> list[Row]:
         Row(group, "verdict", one.verdict_words or UNKNOWN, two.verdict_words or UNKNOWN),
         _number_row(group, "Omega", one.omega, two.omega, decimals=3),
         _number_row(group, "threshold of Omega", one.omega_threshold, two.omega_threshold, decimals=3),
+        _number_row(group, "capacity by its hull", one.capacity_share, two.capacity_share, decimals=3),
     ]
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from PIL import Image, ImageDraw
 
@@ -10,30 +12,50 @@ from core.mesh import TriangleMesh
 
 _BACKGROUND = (242, 243, 239)
 _BODY = np.array([200.0, 190.0, 176.0])
+_CANDY, _CANDY_EDGE = (46, 125, 80), (20, 66, 40)
 _MARGIN = 0.1
 _SUPERSAMPLING = 2
 _TO_EYE = np.array([0.55, -0.95, 0.85])
 _TO_LIGHT = np.array([-0.35, -0.75, 1.2])
 
 
-def shaded_picture(mesh: TriangleMesh, size_px: tuple[int, int]) -> Image.Image:
+def shaded_picture(
+    mesh: TriangleMesh,
+    size_px: tuple[int, int],
+    candies_m: FloatArray | None = None,
+    candy_radius_m: float = 0.0,
+) -> Image.Image:
     """Return a mesh (z up) seen obliquely from above, in parallel projection; 100,000 faces take a second.
 
     Args:
         mesh: the mesh.
         size_px: width and height.
+        candies_m: (N, 3) centres of candies that lie on it, drawn as discs; none: without.
+        candy_radius_m: their radius.
     """
     width, height = (_SUPERSAMPLING * length for length in size_px)
     picture = Image.new("RGB", (width, height), _BACKGROUND)
     draw = ImageDraw.Draw(picture)
     right, up, to_eye = _axes()
-    corners = _corners_px(mesh.vertices_m @ np.column_stack([right, -up]), width, height)[mesh.faces]
+    to_picture = np.column_stack([right, -up])
+    fit = _Fit.of(mesh.vertices_m @ to_picture, width, height)
+    corners = fit.px(mesh.vertices_m @ to_picture)[mesh.faces]
     normals = _normals(mesh)
     brightness = 0.35 + 0.65 * np.abs(normals @ (_TO_LIGHT / np.linalg.norm(_TO_LIGHT)))
     colors = (brightness[:, None] * _BODY).astype(int)
     depths = (mesh.vertices_m @ to_eye)[mesh.faces].mean(axis=1)
-    for face in np.argsort(depths):
-        draw.polygon(corners[face].ravel().tolist(), fill=tuple(colors[face].tolist()))
+    candies = np.zeros((0, 3)) if candies_m is None else candies_m
+    discs = fit.px(candies @ to_picture)
+    radius = candy_radius_m * fit.scale
+    # A candy lies on what is beneath it: half its size nearer to the eye it is not hidden by that.
+    for item in np.argsort(np.concatenate([depths, candies @ to_eye + candy_radius_m]), kind="stable"):
+        if item < len(depths):
+            draw.polygon(corners[item].ravel().tolist(), fill=tuple(colors[item].tolist()))
+        else:
+            x, y = discs[item - len(depths)]
+            draw.ellipse(_around(x, y, radius), fill=_CANDY, outline=_CANDY_EDGE, width=_SUPERSAMPLING)
+    for x, y in discs:  # what lies behind a wall shows through it as a ring
+        draw.ellipse(_around(x, y, radius), outline=_CANDY_EDGE, width=_SUPERSAMPLING)
     return picture.resize(size_px, Image.Resampling.LANCZOS)
 
 
@@ -45,13 +67,28 @@ def _axes() -> tuple[FloatArray, FloatArray, FloatArray]:
     return right, np.cross(to_eye, right), to_eye
 
 
-def _corners_px(points_m: FloatArray, width: int, height: int) -> FloatArray:
-    """Scale points (V, 2) so that they fill the picture but for a margin, in its middle."""
-    low, high = points_m.min(axis=0), points_m.max(axis=0)
-    room = (1 - 2 * _MARGIN) * np.array([width, height])
-    scale = float((room / np.maximum(high - low, 1e-9)).min())
-    found: FloatArray = (points_m - (low + high) / 2) * scale + np.array([width, height]) / 2
-    return found
+def _around(x: float, y: float, radius: float) -> tuple[float, float, float, float]:
+    return x - radius, y - radius, x + radius, y + radius
+
+
+@dataclass(frozen=True)
+class _Fit:
+    """Scales points (V, 2) so that some of them fill the picture but for a margin, in its middle."""
+
+    middle_m: FloatArray
+    scale: float
+    center_px: FloatArray
+
+    @classmethod
+    def of(cls, points_m: FloatArray, width: int, height: int) -> _Fit:
+        low, high = points_m.min(axis=0), points_m.max(axis=0)
+        room = (1 - 2 * _MARGIN) * np.array([width, height])
+        scale = float((room / np.maximum(high - low, 1e-9)).min())
+        return cls((low + high) / 2, scale, np.array([width, height]) / 2)
+
+    def px(self, points_m: FloatArray) -> FloatArray:
+        found: FloatArray = (points_m - self.middle_m) * self.scale + self.center_px
+        return found
 
 
 def _normals(mesh: TriangleMesh) -> FloatArray:

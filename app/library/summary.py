@@ -42,6 +42,8 @@ class SessionSummary:
         is_open_container: the verdict.
         omega: Omega (Eq. 1).
         omega_threshold: Omega_thr it was held against.
+        capacity_share: what it holds as a share of its convex hull; None if Omega decided.
+        capacity_threshold: what that was held against.
         best: the imagined pour with the largest P; among equals the chosen one.
         chosen: the pour to make: the operator's, else the arm's, else the paper's rule's.
         operator_reason: why the operator chose it; empty if nobody did.
@@ -62,6 +64,8 @@ class SessionSummary:
     is_open_container: bool | None = None
     omega: float | None = None
     omega_threshold: float | None = None
+    capacity_share: float | None = None
+    capacity_threshold: float | None = None
     best: PourScore | None = None
     chosen: PourScore | None = None
     operator_reason: str = ""
@@ -112,6 +116,7 @@ def _summarize(folder: Path) -> SessionSummary:
     found = (
         read_json(folder / "containability" / "containability.json") if "containability" in records else {}
     )
+    verdict = found.get("verdict") or {}
     return SessionSummary(
         path=folder,
         name=session.name,
@@ -121,6 +126,8 @@ def _summarize(folder: Path) -> SessionSummary:
         is_open_container=found.get("is_open_container"),
         omega=found.get("omega"),
         omega_threshold=found.get("omega_threshold"),
+        capacity_share=verdict.get("capacity_share"),
+        capacity_threshold=verdict.get("threshold"),
         best=best,
         chosen=chosen,
         operator_reason=reason,

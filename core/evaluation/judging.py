@@ -1,4 +1,4 @@
-"""Judging one object's containability in a worker; what goes wrong with it becomes part of its verdict."""
+"""Judging one object in a worker; what goes wrong with it becomes part of its verdict."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from time import perf_counter
 from core.collision.build import read_collision_model
 from core.errors import Cancelled, PoursightError
 from core.evaluation.labels import LabelledObject
-from core.evaluation.verdicts import ObjectVerdict, mesh_mark
+from core.evaluation.verdicts import ObjectVerdict, measure_by, mesh_mark
 from core.imagination.imagine import imagine_containability
+from core.imagination.judging import capacity_share
 from core.parameters import Parameters
-from core.workers import Task, WorkerReporter
+from core.workers import RunHere, Task, WorkerReporter
 
 
 def judging_task(one: LabelledObject, parameters: Parameters, file: Path) -> Task:
@@ -26,11 +27,14 @@ def judge_object(one: LabelledObject, parameters: Parameters, file: Path) -> Non
         Cancelled: somebody asked to stop; nothing is written.
     """
     began_s = perf_counter()
-    n_drop, n_in, problem = 0, 0, ""
+    n_drop, n_in, share, problem = 0, 0, None, ""
+    reporter = WorkerReporter()
     try:
-        model = read_collision_model(one.mesh, parameters.collision, WorkerReporter())
+        model = read_collision_model(one.mesh, parameters.collision, reporter)
         found = imagine_containability(model, parameters)
-        n_drop, n_in = found.n_drop, found.n_in
+        if measure_by(parameters) == "Capacity share":
+            share = capacity_share(model, found, parameters, RunHere(), reporter)
+        n_drop, n_in = found.n_drop, found.n_in  # with the share or not at all: without it Omega would judge
     except Cancelled:
         raise
     except PoursightError as error:
@@ -38,4 +42,4 @@ def judge_object(one: LabelledObject, parameters: Parameters, file: Path) -> Non
     except Exception as error:  # one object must not end the run of all others
         problem = f"A fault of the program ended this ({type(error).__name__}: {error})."
     seconds = round(perf_counter() - began_s, 3)
-    ObjectVerdict(one.name, mesh_mark(one.mesh), n_drop, n_in, seconds, problem).save(file)
+    ObjectVerdict(one.name, mesh_mark(one.mesh), n_drop, n_in, seconds, problem, share).save(file)

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
 from core.errors import InputError
+from core.evaluation.answers import Agreement, is_answer_table, majority
 
 Label = Literal["container", "non-container", "ambiguous"]
 LABELS: tuple[Label, ...] = get_args(Label)
 MESHES_FOLDER = "meshes"
 _ENDINGS = (".obj", ".ply", ".stl", ".off", ".glb")
+_NO = ("", "0", "no", "false", "n")
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,9 @@ class LabelledObject:
         mesh: its file, in metres.
         category: what it is, such as "mug"; may be empty.
         notes: more about it; may be empty.
+        is_restricted: whether it belongs to the restricted set (Sec. IV-B).
+        is_calibration: whether parameters may be fitted to it.
+        agreement: of the people who were asked, where the labels are raw answers; none otherwise.
     """
 
     name: str
@@ -33,10 +38,16 @@ class LabelledObject:
     mesh: Path
     category: str = ""
     notes: str = ""
+    is_restricted: bool = False
+    is_calibration: bool = False
+    agreement: Agreement | None = None
 
 
 def read_labels(folder: Path, labels: Path | None = None) -> tuple[LabelledObject, ...]:
     """Read the objects of a folder: meshes in it or in `meshes`, and a CSV with the columns id and label.
+
+    Instead of labels the CSV may hold raw answers, with the columns object, annotator, contains and pourable:
+    then the majority decides (Sec. IV-B). The columns restricted and calib may mark objects.
 
     Args:
         folder: that holds the meshes.
@@ -55,6 +66,8 @@ def read_labels(folder: Path, labels: Path | None = None) -> tuple[LabelledObjec
         ) from error
     if not rows:
         raise InputError(f"The labels {path} name no object; give a row with id and label for each.")
+    if is_answer_table(rows[0]):
+        return _of_answers(folder, path, rows)
     objects = tuple(_object(folder, path, row) for row in rows)
     names = [one.name for one in objects]
     twice = next((name for name in names if names.count(name) > 1), None)
@@ -90,7 +103,32 @@ def _object(folder: Path, path: Path, row: Mapping[str, str | None]) -> Labelled
         _mesh(folder, name),
         (row.get("category") or "").strip(),
         (row.get("notes") or "").strip(),
+        _is_marked(row, "restricted"),
+        _is_marked(row, "calib"),
     )
+
+
+def _of_answers(
+    folder: Path, path: Path, rows: Sequence[Mapping[str, str | None]]
+) -> tuple[LabelledObject, ...]:
+    marks = {(row.get("object") or "").strip(): row for row in reversed(rows)}
+    return tuple(
+        LabelledObject(
+            name,
+            "container" if agreement.is_container else "non-container",
+            _mesh(folder, name),
+            (marks[name].get("category") or "").strip(),
+            (marks[name].get("notes") or "").strip(),
+            _is_marked(marks[name], "restricted"),
+            _is_marked(marks[name], "calib"),
+            agreement,
+        )
+        for name, agreement in majority(path, rows).items()
+    )
+
+
+def _is_marked(row: Mapping[str, str | None], column: str) -> bool:
+    return (row.get(column) or "").strip().lower() not in _NO
 
 
 def _mesh(folder: Path, name: str) -> Path:

@@ -17,8 +17,8 @@ class Score:
         n_judged: objects with a verdict.
         n_right: those judged right.
         n_failed: labelled objects that could not be judged; they are not among the judged.
-        smallest_container: (Omega, name) of the container that keeps least; none without one.
-        largest_other: (Omega, name) of the non-container that keeps most; none without one.
+        smallest_container: (score, name) of the container with the smallest; none without one.
+        largest_other: (score, name) of the non-container with the largest; none without one.
     """
 
     n_judged: int
@@ -34,15 +34,15 @@ class Score:
 
     @property
     def margin(self) -> float | None:
-        """How far the containers' Omega stays above the others'; negative where they overlap."""
+        """How far the containers' score stays above the others'; negative where they overlap."""
         if self.smallest_container is None or self.largest_other is None:
             return None
         return self.smallest_container[0] - self.largest_other[0]
 
 
-def is_right(label: str, omega: float, threshold: float) -> bool | None:
-    """Whether a verdict agrees with a label; none for an ambiguous object."""
-    return None if label == "ambiguous" else (omega > threshold) == (label == "container")
+def is_right(label: str, found: float, threshold: float) -> bool | None:
+    """Whether a score, held against its threshold, agrees with a label; none for an ambiguous object."""
+    return None if label == "ambiguous" else (found > threshold) == (label == "container")
 
 
 def score(
@@ -53,16 +53,16 @@ def score(
     Args:
         objects: all of them.
         verdicts: by the objects' names; what was not judged yet is not there.
-        threshold: Omega_thr.
+        threshold: of what judges: a capacity share, or Omega_thr.
     """
     labelled = [one for one in objects if one.label != "ambiguous" and one.name in verdicts]
-    omegas = {one.name: verdicts[one.name].omega for one in labelled}
-    judged = [(one, omega) for one in labelled if (omega := omegas[one.name]) is not None]
-    containers = [(omega, one.name) for one, omega in judged if one.label == "container"]
-    others = [(omega, one.name) for one, omega in judged if one.label != "container"]
+    scores = {one.name: verdicts[one.name].score for one in labelled}
+    judged = [(one, found) for one in labelled if (found := scores[one.name]) is not None]
+    containers = [(found, one.name) for one, found in judged if one.label == "container"]
+    others = [(found, one.name) for one, found in judged if one.label != "container"]
     return Score(
         len(judged),
-        sum(bool(is_right(one.label, omega, threshold)) for one, omega in judged),
+        sum(bool(is_right(one.label, found, threshold)) for one, found in judged),
         len(labelled) - len(judged),
         min(containers, default=None),
         max(others, default=None),

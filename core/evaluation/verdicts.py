@@ -8,12 +8,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from core.errors import SessionError
+from core.evaluation.trials import Measure, Scored
 from core.files import read_json, write_json
 from core.parameters import Parameters
 
 
 @dataclass(frozen=True)
-class ObjectVerdict:
+class ObjectVerdict(Scored):
     """What the imagination says of one object.
 
     Attributes:
@@ -23,6 +24,7 @@ class ObjectVerdict:
         n_in: candies that stayed.
         seconds: it took.
         problem: why it could not be judged, in a sentence; empty if it could.
+        capacity_share: volume it holds as a share of its convex hull's; none if it was judged by Omega.
     """
 
     name: str
@@ -31,11 +33,7 @@ class ObjectVerdict:
     n_in: int
     seconds: float
     problem: str = ""
-
-    @property
-    def omega(self) -> float | None:
-        """Omega (Eq. 1); none if it could not be judged."""
-        return self.n_in / self.n_drop if self.n_drop else None
+    capacity_share: float | None = None
 
     def save(self, path: Path) -> None:
         """Write it as JSON, whole or not at all."""
@@ -50,10 +48,20 @@ class ObjectVerdict:
             return None
 
 
+def measure_by(parameters: Parameters) -> Measure:
+    """Return what judges with these parameters."""
+    return "Omega" if parameters.containability.verdict == "omega" else "Capacity share"
+
+
 def judging_key(parameters: Parameters) -> str:
-    """Return a digest of the parameters that decide Omega: not its threshold, nothing of the pours."""
-    groups = parameters.model_dump(include={"seed", "collision", "particle", "solver", "containability"})
-    del groups["containability"]["omega_threshold"]
+    """Return a digest of the parameters that decide the score: no threshold, nothing of the pours."""
+    names = {"seed", "collision", "particle", "solver", "containability"}
+    if measure_by(parameters) == "Capacity share":
+        names.add("capacity")
+    groups = parameters.model_dump(include=names)
+    # Which of the two measures it is, the group of the capacity tells.
+    for name in ("verdict", "capacity_threshold", "omega_threshold"):
+        del groups["containability"][name]
     text = json.dumps(groups, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 

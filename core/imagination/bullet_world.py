@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from functools import cache
 from math import ceil, hypot
+from typing import Any
 
 import numpy as np
 
 from core.errors import WorkerError
-from core.geometry import FloatArray
+from core.geometry import FloatArray, ellipsoid_inertia_kg_m2
 from core.imagination.body import BodyFile
 from core.imagination.engine import bullet
-from core.imagination.particle_shape import ellipsoid_hull_m
+from core.imagination.particle_shape import ellipsoid_hull_m, ellipsoid_skin_m
 from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
 
 GRAVITY_M_S2 = 9.81
@@ -25,6 +26,8 @@ CHECK_STEPS = 4
 _REGION_MARGIN_M = 0.015
 _SAFE_MOVE_M = 0.0009
 """Bullet sees a triangle from 1 mm away: a candy that moves on by more between two looks slips through it."""
+_SAFE_SHARE_OF_SKIN = 0.6
+"""Of the skin around a hull, through which a triangle may come before it is lost from sight."""
 _DRIVEN_MASS_KG = 1e4
 
 
@@ -56,7 +59,8 @@ class BulletWorld:
         self._particle = particle
         self._contact = contact
         self._region_m = (region_m + np.array([[-_REGION_MARGIN_M], [_REGION_MARGIN_M]])).tolist()
-        self._safe_m_s = _SAFE_MOVE_M * solver.rate_hz
+        self._skin_m = ellipsoid_skin_m(particle) if particle.shape == "ellipsoid" else 0.0
+        self._safe_m_s = max(_SAFE_MOVE_M, _SAFE_SHARE_OF_SKIN * self._skin_m) * solver.rate_hz
         self._client = _server()
         self._substeps = 0
         self._steps = 0
@@ -72,6 +76,7 @@ class BulletWorld:
         )
         self.set_gravity(np.array([0.0, 0.0, -GRAVITY_M_S2]))
         self._shape = self._create_particle_shape()
+        self._skin = self._skin_settings()
         # Without a visual of its own Bullet makes one from the shape, which takes longer than all the rest.
         self._visual: int = bullet.createVisualShape(
             bullet.GEOM_BOX, halfExtents=[0.001] * 3, physicsClientId=self._client
@@ -148,6 +153,7 @@ class BulletWorld:
             restitution=self._contact.restitution,
             activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
             physicsClientId=self._client,
+            **self._skin,
         )
         if velocity is not None:
             bullet.resetBaseVelocity(
@@ -256,7 +262,20 @@ class BulletWorld:
                 "height": particle.height_m,
             }
         else:
-            hull = ellipsoid_hull_m(particle.diameter_m, particle.height_m)
+            skin_m = 2 * self._skin_m
+            hull = ellipsoid_hull_m(particle.diameter_m - skin_m, particle.height_m - skin_m)
             arguments = {"shapeType": bullet.GEOM_MESH, "vertices": hull.tolist()}
         shape: int = bullet.createCollisionShape(**arguments, physicsClientId=self._client)
         return shape
+
+    def _skin_settings(self) -> dict[str, Any]:
+        """What `changeDynamics` must be told of a particle that is a hull in a skin."""
+        if self._skin_m == 0:
+            return {}
+        particle = self._particle
+        inertia = ellipsoid_inertia_kg_m2(particle.mass_kg, particle.diameter_m, particle.height_m)
+        return {
+            "mass": self._particle.mass_kg,
+            "collisionMargin": self._skin_m,
+            "localInertiaDiagonal": inertia.tolist(),
+        }

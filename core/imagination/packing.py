@@ -21,8 +21,9 @@ from core.workers import Task, report_fraction
 
 PACKING_WEIGHT = 4.0
 _RELEASE_BELOW_M = 0.005
-_SLOT_PITCH = 1.15
-"""Distance of neighbours at the start, relative to the particle, so that none overlap even when jittered."""
+_SLOT_PITCHES = (1.15, 1.02)
+"""Distance of neighbours at the start, relative to the particle, so that none overlap even when jittered; the
+closer one where the candies find no room otherwise."""
 _FREE_AT_MOUTH = 0.1
 """Share of the cup's length kept free at its mouth, so that nothing falls out before the turn."""
 _REPORT_STEPS = 25
@@ -57,8 +58,8 @@ def pack_cup(parameters: Parameters, packing: int) -> FloatArray:
     Raises:
         StageError: the cup cannot hold N_pour candies.
     """
-    slots = _slots(parameters)
     n_pour = parameters.pouring.n_pour
+    pitch, slots = _widest(parameters)
     if len(slots) < n_pour:
         raise StageError(
             f"The cup cannot hold {n_pour} candies: lying as it does before a pour it has room for "
@@ -69,16 +70,30 @@ def pack_cup(parameters: Parameters, packing: int) -> FloatArray:
     from_middle = np.abs(slots[:, 0] - parameters.pouring.cup.length_m / 2)
     central = slots[np.argsort(from_middle, kind="stable")][: max(n_pour, len(slots) // 2)]
     chosen = central[generator.permutation(len(central))[:n_pour]]
-    shift = 0.4 * (_SLOT_PITCH - 1) * particle_extents_m(parameters.particle)
+    shift = 0.4 * (pitch - 1) * particle_extents_m(parameters.particle)
     packed: FloatArray = chosen + generator.uniform(-shift, shift, chosen.shape)
     return packed
 
 
-def _slots(parameters: Parameters) -> FloatArray:
+def cup_holds(parameters: Parameters) -> bool:
+    """Return whether the cup has room for N_pour candies, lying as it does before a pour."""
+    return len(_widest(parameters)[1]) >= parameters.pouring.n_pour
+
+
+def _widest(parameters: Parameters) -> tuple[float, FloatArray]:
+    """The largest pitch with enough slots, and these; the closest one if none has."""
+    for pitch in _SLOT_PITCHES:
+        slots = _slots(parameters, pitch)
+        if len(slots) >= parameters.pouring.n_pour:
+            break
+    return pitch, slots
+
+
+def _slots(parameters: Parameters, slot_pitch: float) -> FloatArray:
     """All places (n, 3) of a grid, E-local frame, at which a flat candy lies wholly inside the cup."""
     cup = parameters.pouring.cup
     extents = particle_extents_m(parameters.particle)
-    pitch = _SLOT_PITCH * extents
+    pitch = slot_pitch * extents
     reach = cup.length_m, 2 * cup.mouth_radius_m, 2 * cup.mouth_radius_m
     counts = [floor(length / step) for length, step in zip(reach, pitch, strict=True)]
     middles = cup.length_m / 2, 0.0, cup.mouth_radius_m - cup.wall_m

@@ -8,7 +8,8 @@ from math import cos, pi, sin
 import numpy as np
 
 from core.geometry import FloatArray, make_pose, rotation_x, rotation_y
-from core.imagination.bullet_world import GRAVITY_M_S2
+from core.imagination.bullet_world import GRAVITY_M_S2, BulletWorld
+from core.imagination.rotations import quaternion_of
 from core.parameters.imagination import ContainabilityParameters
 
 
@@ -38,6 +39,14 @@ class Perturbation:
         self._pushes_from_s = parameters.drop_s + 2 * parameters.rotation_s
         self.duration_s = self._pushes_from_s + 4 * parameters.translation_s
 
+    def reach_m(self, aabb_m: FloatArray) -> FloatArray:
+        """Return the box (2, 3) that holds an object with the box `aabb_m` (2, 3) however it is turned."""
+        corners = np.array([[x, y, z] for x in aabb_m[:, 0] for y in aabb_m[:, 1] for z in aabb_m[:, 2]])
+        farthest_m = float(np.linalg.norm(corners - self._pivot_m, axis=1).max())
+        # No point moves on by more than the chord of the largest turn, about x and y together.
+        moved_m = 2 * farthest_m * sin(self._parameters.rotation_rad / 2)
+        return np.array([aabb_m[0] - moved_m, aabb_m[1] + moved_m])
+
     def at(self, time_s: float) -> Motion:
         """Return the motion at `time_s` after the start."""
         angle_x, rate_x = self._rotation(time_s - self._rotations_from_s)
@@ -65,3 +74,11 @@ class Perturbation:
         index = min(int((time_s - self._pushes_from_s) / self._parameters.translation_s), 3)
         push = self._parameters.translation_m_s2
         return np.array([push * directions[index][0], push * directions[index][1], -GRAVITY_M_S2])
+
+
+def move_object(world: BulletWorld, body_id: int, motion: Motion, center_of_mass_m: FloatArray) -> None:
+    """Put a driven body and the force field where `motion` has them, for the next step."""
+    world.set_gravity(motion.gravity_m_s2)
+    position, angular = motion.T_world_object[:3, 3], motion.angular_velocity_rad_s
+    velocity = np.cross(angular, position - center_of_mass_m)
+    world.drive(body_id, position, quaternion_of(motion.T_world_object[:3, :3]), velocity, angular)

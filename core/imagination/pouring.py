@@ -15,7 +15,7 @@ from core.imagination.results import Footprint, PourGrid
 from core.parameters import Parameters
 from core.parameters.imagination import N_INDENT, N_THETA, PouringParameters
 from core.progress import Reporter
-from core.workers import WorkerPool
+from core.workers import TaskRunner
 
 
 def imagine_pours(
@@ -24,7 +24,7 @@ def imagine_pours(
     cup: BodyFile,
     cup_runs: Sequence[CupRun],
     parameters: Parameters,
-    pool: WorkerPool,
+    pool: TaskRunner,
     reporter: Reporter,
 ) -> PourGrid:
     """Imagine all pours; `cup_runs` holds one run per packing (none are needed in mode `full`)."""
@@ -41,13 +41,14 @@ def imagine_pours(
                 if pouring.mode == "full":
                     tasks.append(full_task(target, cup, packing, pour, parameters, record))
                 else:
-                    tasks.append(replay_task(target, cup_runs[packing], pour, parameters, record))
+                    tasks.append(replay_task(target, cup_runs[packing], pour.T_world_E, parameters, record))
     outcomes: list[PourOutcome] = pool.run(tasks, "pouring", reporter)
     shape = len(thetas), N_INDENT, pouring.n_packings
     n_in = np.array([outcome.n_in for outcome in outcomes], dtype=np.int64).reshape(shape)
+    n_spilled = np.array([outcome.n_spilled for outcome in outcomes], dtype=np.int64).reshape(shape)
     recordings = [outcome.recording for outcome in outcomes if outcome.recording is not None]
     rows = tuple(tuple(recordings[i * N_INDENT : (i + 1) * N_INDENT]) for i in range(len(thetas)))
-    return PourGrid(pouring.n_pour, n_in, thetas, indents, pivots, rows)
+    return PourGrid(pouring.n_pour, n_in, n_spilled, thetas, indents, pivots, rows)
 
 
 def pour_directions_rad(footprint: Footprint, pouring: PouringParameters) -> FloatArray:

@@ -13,7 +13,7 @@ from core.imagination.containability import ObjectAtRest, inside_aabb
 from core.imagination.cup import pour_duration_s
 from core.imagination.packing import CupRun, PouringCup, pack_cup
 from core.imagination.recording import Recorder, Recording
-from core.imagination.rotations import multiply_quaternions, yaw_quaternion
+from core.imagination.rotations import multiply_quaternions, quaternion_of, yaw_quaternion
 from core.parameters import Parameters
 from core.workers import Task, report_fraction
 
@@ -29,18 +29,32 @@ class Pour:
     pivot_m: FloatArray
     theta_rad: float
 
+    @property
+    def T_world_E(self) -> FloatArray:
+        """(4, 4) pose of the E-local frame."""
+        return make_pose(rotation_z(self.theta_rad), self.pivot_m)
+
 
 @dataclass(frozen=True)
 class PourOutcome:
-    """Candies that count as poured in, and the recording if one was asked for."""
+    """What became of the candies.
+
+    Attributes:
+        n_in: those that count as poured in.
+        n_spilled: those that left the cup and fell beside the object; one on a heap above the rim did not.
+        recording: none if none was asked for.
+    """
 
     n_in: int
+    n_spilled: int
     recording: Recording | None
 
 
-def replay_task(target: ObjectAtRest, run: CupRun, pour: Pour, parameters: Parameters, record: bool) -> Task:
-    """Return the task whose result is the `PourOutcome` of a replayed pour."""
-    return Task(_replay, (target, run, pour, parameters, record))
+def replay_task(
+    target: ObjectAtRest, run: CupRun, T_world_E: FloatArray, parameters: Parameters, record: bool
+) -> Task:
+    """Return the task whose result is the `PourOutcome` of a cup run replayed at a pose (4, 4)."""
+    return Task(_replay, (target, run, T_world_E, parameters, record))
 
 
 def full_task(
@@ -51,10 +65,9 @@ def full_task(
 
 
 def _replay(
-    target: ObjectAtRest, run: CupRun, pour: Pour, parameters: Parameters, record: bool
+    target: ObjectAtRest, run: CupRun, T_world_E: FloatArray, parameters: Parameters, record: bool
 ) -> PourOutcome:
-    T_world_E = make_pose(rotation_z(pour.theta_rad), pour.pivot_m)
-    poses, velocities = _in_world(run, T_world_E, pour.theta_rad)
+    poses, velocities = _in_world(run, T_world_E)
     steps = round(pour_duration_s(parameters.pouring) * parameters.solver.rate_hz)
     record_steps = max(round(parameters.evidence.record_interval_s * parameters.solver.rate_hz), 1)
     order = [int(k) for k in np.argsort(run.release_steps, kind="stable") if run.release_steps[k] >= 0]
@@ -81,19 +94,19 @@ def _replay(
         final = world.poses()
 
     n_in = _count(final, parameters.pouring.n_pour, target, parameters)
-    recording = _whole_recording(run, T_world_E, pour.theta_rad, frames, in_world, final) if record else None
-    return PourOutcome(n_in, recording)
+    recording = _whole_recording(run, T_world_E, frames, in_world, final) if record else None
+    return PourOutcome(n_in, _n_fallen(final, target), recording)
 
 
 def _is_over(world: BulletWorld, in_world: list[int], order: list[int]) -> bool:
     return len(in_world) == len(order) and world.top_speed_m_s() < _RESTING_M_S
 
 
-def _in_world(run: CupRun, T_world_E: FloatArray, theta_rad: float) -> tuple[FloatArray, FloatArray]:
+def _in_world(run: CupRun, T_world_E: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Take the release states from the E-local frame to the world."""
     positions = transform_points(T_world_E, run.poses[:, :3])
-    quaternions = multiply_quaternions(yaw_quaternion(theta_rad), run.poses[:, 3:])
     rotation = T_world_E[:3, :3]
+    quaternions = multiply_quaternions(quaternion_of(rotation), run.poses[:, 3:])
     velocities = [run.velocities[:, :3] @ rotation.T, run.velocities[:, 3:] @ rotation.T]
     return np.hstack([positions, quaternions]), np.hstack(velocities)
 
@@ -102,15 +115,17 @@ def _count(final: FloatArray, n_pour: int, target: ObjectAtRest, parameters: Par
     """Count the candies poured in, given the poses of those that left the cup."""
     if parameters.pouring.counted == "inside":
         return int(inside_aabb(final[:, :3], target.aabb_m).sum())
+    return n_pour - _n_fallen(final, target)  # those still in the cup are above the floor too
+
+
+def _n_fallen(final: FloatArray, target: ObjectAtRest) -> int:
     with np.errstate(invalid="ignore"):
-        stayed_up = int((final[:, 2] >= target.aabb_m[0, 2]).sum())
-    return stayed_up + n_pour - len(final)  # those still in the cup are above the floor too
+        return len(final) - int((final[:, 2] >= target.aabb_m[0, 2]).sum())
 
 
 def _whole_recording(
     run: CupRun,
     T_world_E: FloatArray,
-    theta_rad: float,
     frames: list[tuple[int, FloatArray]],
     in_world: list[int],
     final: FloatArray,
@@ -118,7 +133,7 @@ def _whole_recording(
     """Join what the cup run recorded before each candy's release with what the replay recorded after."""
     before = run.recording
     positions = transform_points(T_world_E, before.positions_m).astype(np.float32)
-    quaternions = multiply_quaternions(yaw_quaternion(theta_rad), before.quaternions)
+    quaternions = multiply_quaternions(quaternion_of(T_world_E[:3, :3]), before.quaternions)
     after = dict(frames)
     for moment in range(len(before.time_s)):
         # Once all candies rest the replay ends: from then on they stay where they are.
@@ -144,11 +159,10 @@ def _pour_fully(
     recorder = Recorder(pouring.n_pour)
     reach = np.array([1.0, 1.0, 0.0]) * pouring.cup.length_m
     around = np.array([target.aabb_m[0] - reach, target.aabb_m[1] + pouring.cup.length_m])
-    T_world_E = make_pose(rotation_z(pour.theta_rad), pour.pivot_m)
     with BulletWorld(parameters.solver, parameters.particle, pouring.contact, around) as world:
         world.add_fixed_body(target.body, pouring.contact.restitution)
         cup = PouringCup(world, cup_body, parameters, pour.pivot_m, pour.theta_rad)
-        for start in transform_points(T_world_E, pack_cup(parameters, packing)):
+        for start in transform_points(pour.T_world_E, pack_cup(parameters, packing)):
             world.add_particle(np.array([*start, *yaw_quaternion(pour.theta_rad)]))
         for step in range(steps):
             T_world_cup = cup.move(step / rate_hz)
@@ -160,4 +174,4 @@ def _pour_fully(
         final = world.poses()
         recorder.add(steps / rate_hz, final, cup.move(steps / rate_hz))
     n_in = _count(final, pouring.n_pour, target, parameters)
-    return PourOutcome(n_in, recorder.recording() if record else None)
+    return PourOutcome(n_in, _n_fallen(final, target), recorder.recording() if record else None)

@@ -12,6 +12,7 @@ import numpy as np
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import AnyArray, BoolArray, FloatArray, IntArray
 from core.imagination.recording import Recording
+from core.imagination.verdict import Verdict
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,7 @@ class Containability:
         aabb_m: (2, 3) lower and upper corner of the object's AABB.
         footprint: None when nothing stayed.
         recording: the drop, to look at.
+        verdict: by what it holds; none if Omega decides.
     """
 
     omega_threshold: float
@@ -59,6 +61,7 @@ class Containability:
     aabb_m: FloatArray
     footprint: Footprint | None
     recording: Recording
+    verdict: Verdict | None = None
 
     @property
     def n_drop(self) -> int:
@@ -77,7 +80,12 @@ class Containability:
 
     @property
     def is_open_container(self) -> bool:
-        """Whether Omega exceeds its threshold."""
+        """The verdict: by what the object holds, or by Omega."""
+        return self.exceeds_omega if self.verdict is None else self.verdict.is_container
+
+    @property
+    def exceeds_omega(self) -> bool:
+        """The paper's verdict: whether Omega exceeds its threshold."""
         return self.omega > self.omega_threshold
 
     def save(self, folder: Path) -> None:
@@ -97,6 +105,7 @@ class Containability:
                 "axis_rad": footprint.axis_rad,
                 "deviations_m": footprint.deviations_m.tolist(),
             },
+            "verdict": None if self.verdict is None else self.verdict.to_table(),
         }
         write_json(folder / "containability.json", table)
         write_arrays(
@@ -111,7 +120,7 @@ class Containability:
         """Read what `save` wrote."""
         table = read_json(folder / "containability.json")
         arrays = read_arrays(folder / "drop.npz")
-        found = table["footprint"]
+        found, verdict = table["footprint"], table.get("verdict")
         return cls(
             table["omega_threshold"],
             arrays["drop_positions_m"],
@@ -121,6 +130,7 @@ class Containability:
             if found is None
             else Footprint(np.array(found["center_m"]), found["axis_rad"], np.array(found["deviations_m"])),
             Recording.from_arrays(arrays),
+            None if verdict is None else Verdict.from_table(verdict),
         )
 
 
@@ -131,6 +141,7 @@ class PourGrid:
     Attributes:
         n_pour: N_pour.
         n_in: (I, 3, packings) candies that count as poured in.
+        n_spilled: (I, 3, packings) candies that fell beside the object.
         theta_rad: (I,) direction of the ray from p_E to the pivot, against the world's x-axis.
         indent_m: (3,) L_idt.
         pivot_m: (I, 3, 3) r_pivot of each pour.
@@ -139,6 +150,7 @@ class PourGrid:
 
     n_pour: int
     n_in: IntArray
+    n_spilled: IntArray
     theta_rad: FloatArray
     indent_m: FloatArray
     pivot_m: FloatArray
@@ -163,6 +175,7 @@ class PourGrid:
             "p": self.p.tolist(),
             "p_spread": self.p_spread.tolist(),
             "n_in": self.n_in.tolist(),
+            "n_spilled": self.n_spilled.tolist(),
             "theta_rad": self.theta_rad.tolist(),
             "indent_m": self.indent_m.tolist(),
             "pivot_m": self.pivot_m.tolist(),
@@ -187,11 +200,19 @@ class PourGrid:
         return cls(
             table["n_pour"],
             n_in,
+            # Sessions from before the two were told apart: what is not in counts as spilled.
+            np.array(table["n_spilled"], dtype=np.int64) if "n_spilled" in table else table["n_pour"] - n_in,
             np.array(table["theta_rad"]),
             np.array(table["indent_m"]),
             np.array(table["pivot_m"]),
             recordings,
         )
+
+
+def imagined_n_pour(folder: Path) -> int | None:
+    """Return the N_pour that the pours saved in `folder` were imagined with; none if there are none."""
+    path = folder / "pours.json"
+    return int(read_json(path)["n_pour"]) if path.is_file() else None
 
 
 @dataclass(frozen=True)

@@ -19,22 +19,29 @@ class ParticleParameters(Group):
     """The candy (Sec. IV-C)."""
 
     shape: Literal["cylinder", "ellipsoid", "sphere"] = choice(
-        "cylinder",
+        "ellipsoid",
         "Implicit cylinder (what the released code's candy acts as), ellipsoid hull (the paper's) or sphere.",
-        source=f"{CODE}; {PAPER}, Sec. IV-C: ellipsoid",
+        source=f"{PAPER}, Sec. IV-C; {CODE}: cylinder",
     )
     diameter_m: float = quantity(
-        0.007, "Diameter across.", unit="m", source=f"{CODE}, with the collision margin", low=0.001, high=0.05
-    )
-    height_m: float = quantity(
-        0.0028,
-        "Thickness; a sphere has none of its own.",
+        0.0132,
+        "Diameter across.",
         unit="m",
-        source=f"{CODE}, with the collision margin",
+        source=f"plain M&M's; {CODE}: 0.007, with the collision margin",
         low=0.001,
         high=0.05,
     )
-    mass_kg: float = quantity(0.0003, "Mass of one.", unit="kg", source=CODE, low=1e-5, high=0.1)
+    height_m: float = quantity(
+        0.007,
+        "Thickness; a sphere has none of its own.",
+        unit="m",
+        source=f"plain M&M's; {CODE}: 0.0028, with the collision margin",
+        low=0.001,
+        high=0.05,
+    )
+    mass_kg: float = quantity(
+        0.0009, "Mass of one.", unit="kg", source=f"plain M&M's; {CODE}: 0.0003", low=1e-5, high=0.1
+    )
 
 
 class ContactParameters(Group):
@@ -119,10 +126,10 @@ class ContainabilityParameters(Group):
         high=20,
     )
     rotation_rad: float = quantity(
-        pi / 60,
+        radians(15),
         "Amplitude of the rotation.",
         unit="rad",
-        source=f"{PAPER}, Sec. III-A",
+        source=f"{OURS}: docs/decisions/0013; {PAPER}, Sec. III-A: pi/60",
         low=0,
         high=radians(60),
     )
@@ -132,16 +139,36 @@ class ContainabilityParameters(Group):
     translation_m_s2: float = quantity(
         0.5, "g_h: strength of each push.", unit="m/s^2", source=f"{PAPER}, Sec. III-A", low=0, high=20
     )
-    omega_threshold: float = quantity(
-        0.0,
-        "Omega_thr: above it the object is an open container.",
+    counted: Literal["room_above", "centre"] = choice(
+        "room_above",
+        "Which candies count as retained: all with their centre inside the object's AABB, or only those on "
+        "top of which another would have its centre inside as well.",
+        source=f"{OURS}: docs/decisions/0013; {PAPER}, Sec. III-A: centre",
+    )
+    verdict: Literal["capacity", "omega"] = choice(
+        "capacity",
+        "What makes an open container: how much of its convex hull candies fill, or the share Omega of the "
+        "dropped candies that stayed.",
+        source=f"{OURS}: docs/decisions/0015; {PAPER}, Sec. III-A: omega",
+    )
+    capacity_threshold: float = quantity(
+        0.1,
+        "Share of the convex hull's volume above which what it holds makes the object an open container.",
         unit="",
-        source=f"{PAPER}, Sec. IV-C",
+        source=f"{OURS}: docs/decisions/0015",
+        low=0,
+        high=1,
+    )
+    omega_threshold: float = quantity(
+        0.13,
+        "Omega_thr: above it the object is an open container by the paper's rule.",
+        unit="",
+        source=f"{OURS}: docs/decisions/0013; {PAPER}, Sec. IV-C: 0",
         low=0,
         high=1,
     )
     contact: ContactParameters = ContactParameters(
-        lateral_friction=0.005, spinning_friction=0.5, rolling_friction=0.5, restitution=0.1
+        lateral_friction=0.2, spinning_friction=0.02, rolling_friction=0.02, restitution=0.1
     )
 
     @model_validator(mode="after")
@@ -149,6 +176,16 @@ class ContainabilityParameters(Group):
         if self.n_min > self.n_max:
             raise ValueError("n_min must not exceed n_max")
         return self
+
+    @property
+    def deciding_threshold_name(self) -> Literal["capacity_threshold", "omega_threshold"]:
+        """Which of the two thresholds the verdict needs."""
+        return "omega_threshold" if self.verdict == "omega" else "capacity_threshold"
+
+    @property
+    def deciding_threshold(self) -> float:
+        """The threshold that the verdict needs."""
+        return self.omega_threshold if self.verdict == "omega" else self.capacity_threshold
 
 
 class CupParameters(Group):
@@ -187,8 +224,14 @@ class PouringParameters(Group):
     n_pour: int = quantity(
         60, "N_pour: candies in the cup.", unit="", source=f"{PAPER}, Sec. IV-C", low=1, high=1000
     )
+    amount: Literal["number", "safe", "half"] = choice(
+        "number",
+        "How many candies go in: n_pour, as many as safely fit, or half of what fits; what one cup does not "
+        "hold is poured with several.",
+        source=OURS,
+    )
     n_packings: int = quantity(
-        3,
+        1,
         "Different packings of the cup; each pour is imagined with each.",
         unit="",
         source=OURS,
@@ -245,7 +288,7 @@ class PouringParameters(Group):
     )
     cup: CupParameters = CupParameters()
     contact: ContactParameters = ContactParameters(
-        lateral_friction=0.2, spinning_friction=0.1, rolling_friction=0.1, restitution=0.0
+        lateral_friction=0.4, spinning_friction=0.005, rolling_friction=0.005, restitution=0.5
     )
 
 

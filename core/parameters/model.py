@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from core.parameters.capacity import CapacityParameters
 from core.parameters.fields import OURS, Group, quantity
+from core.parameters.holding import HoldingParameters
 from core.parameters.imagination import (
     ContainabilityParameters,
     EvidenceParameters,
@@ -11,6 +13,7 @@ from core.parameters.imagination import (
     SolverParameters,
 )
 from core.parameters.reconstruction import CollisionParameters, ReconstructionParameters
+from core.parameters.risk import RiskParameters
 
 
 class Parameters(Group):
@@ -23,4 +26,7 @@ class Parameters(Group):
     solver: SolverParameters = SolverParameters()
     containability: ContainabilityParameters = ContainabilityParameters()
     pouring: PouringParameters = PouringParameters()
+    capacity: CapacityParameters = CapacityParameters()
+    holding: HoldingParameters = HoldingParameters()
+    risk: RiskParameters = RiskParameters()
     evidence: EvidenceParameters = EvidenceParameters()

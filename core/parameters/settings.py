@@ -6,7 +6,7 @@ import difflib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any, TypeVar, get_args
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -14,6 +14,9 @@ from pydantic.fields import FieldInfo
 from core.errors import InputError
 from core.parameters.fields import Group
 from core.parameters.model import Parameters
+
+G = TypeVar("G", bound=Group)
+"""Any group of parameters, such as all of them."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ def difference(parameters: Parameters, base: Parameters) -> dict[str, tuple[Any,
     }
 
 
-def apply_settings(parameters: Parameters, settings: Mapping[str, Any]) -> Parameters:
+def apply_settings(parameters: G, settings: Mapping[str, Any]) -> G:
     """Return a copy with `{dotted name: value or its text}` set.
 
     Raises:
@@ -89,9 +92,9 @@ def apply_settings(parameters: Parameters, settings: Mapping[str, Any]) -> Param
             branch = branch[group]
         branch[leaf] = _parse(value)
     try:
-        return Parameters.model_validate(tree)
+        return type(parameters).model_validate(tree)
     except ValidationError as error:
-        raise InputError(_explain(error)) from error
+        raise InputError(_explain(error, describe(parameters))) from error
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
@@ -133,10 +136,10 @@ def _facts(name: str, field: FieldInfo, default: Any) -> FieldFacts:
     )
 
 
-def _explain(error: ValidationError) -> str:
+def _explain(error: ValidationError, known: Iterable[FieldFacts]) -> str:
     """One sentence on the first thing wrong."""
     first = error.errors()[0]
-    facts = {fact.name: fact for fact in describe()}
+    facts = {fact.name: fact for fact in known}
     path = [str(part) for part in first["loc"]]
     while path and ".".join(path) not in facts:
         path.pop()

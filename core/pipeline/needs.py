@@ -100,8 +100,13 @@ def _computed(session: Session, stage: str, needs: StageNeeds, found: dict[str, 
     return Freshness.FRESH if is_fresh else Freshness.STALE
 
 
+_IMAGINING = {"seed", "particle", "solver", "containability", "capacity", "holding", "pouring", "risk"}
+
+
 def _imagination_settings(parameters: Parameters) -> dict[str, Any]:
-    groups = parameters.model_dump(include={"seed", "particle", "solver", "containability", "pouring"})
+    groups = parameters.model_dump(
+        include={"seed", "particle", "solver", "containability", "pouring", "risk"}
+    )
     settings: dict[str, Any] = json.loads(json.dumps(groups))
     settings["aabb_margin_m"] = parameters.collision.aabb_margin_m
     settings["record_interval_s"] = parameters.evidence.record_interval_s

@@ -16,7 +16,7 @@ from core.imagination.imagine import Imagination, imagine
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
 from core.imagination.rendering.shapes import cup_surface
-from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.risk.scan_error import with_scan_error
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh, read_mesh_parts
 from core.mesh_topology import is_convex, join
@@ -24,6 +24,7 @@ from core.motion.pour.cell import PourCell
 from core.motion.pour.choosing import PourMotions
 from core.motion.pour.planning import judge_pours
 from core.parameters import Parameters, load_preset
+from core.pipeline import kept_imagination
 from core.pipeline.jobs import collision_job, quality_job, reconstruction_job
 from core.pipeline.needs import source_of, stage_needs
 from core.pipeline.report_content import gather
@@ -197,19 +198,24 @@ class Pipeline:
         inputs = self._digests(needs.inputs)
         if all(self.session.is_fresh(stage, inputs, settings) for stage in ("containability", "pouring")):
             return self._load_imagination()
-        result = imagine(model, self.parameters, self.pool, self.reporter)
+        result = imagine(model, self._with_scan_error(), self.pool, self.reporter)
         with self.session.writing(
             "containability", inputs=inputs, parameters=settings, seconds=result.containability_s
         ) as stage:
-            result.containability.save(stage)
+            kept_imagination.save_containability(result, stage)
         with self.session.writing(
             "pouring", inputs=inputs, parameters=settings, seconds=result.pouring_s
         ) as stage:
-            choice = None if result.choice is None else result.choice.to_table()
-            write_json(stage / "choice.json", {"choice": choice})
-            if result.grid is not None:
-                result.grid.save(stage)
+            kept_imagination.save_pouring(result, stage)
         return result
+
+    def poured_parameters(self) -> Parameters:
+        """Return the parameters with the N_pour that the pours were imagined with."""
+        grid = self.imagination().grid
+        if grid is None:
+            return self.parameters
+        pouring = self.parameters.pouring.model_copy(update={"n_pour": grid.n_pour})
+        return self.parameters.model_copy(update={"pouring": pouring})
 
     def motion(self, cell: PourCell, described: dict[str, Any]) -> PourMotions | None:
         """Judge which of the imagined pours the arm of a cell can make, and choose among them.
@@ -241,7 +247,7 @@ class Pipeline:
                 self.pool,
                 self.reporter,
             )
-            return PourMotions.of(pours, grid, pouring.cup)
+            return PourMotions.of(pours, grid, pouring.cup, imagination.risk)
 
         return self._fresh("motion", ("containability", "pouring"), described, PourMotions.load, run)
 
@@ -253,7 +259,7 @@ class Pipeline:
             return render_evidence(
                 self.surface(),
                 cup_surface(self.parameters.pouring.cup),
-                self.parameters,
+                self.poured_parameters(),
                 imagination.containability,
                 imagination.grid,
                 imagination.choice,
@@ -283,6 +289,13 @@ class Pipeline:
         path = self.session.path / "report.html"
         write_report(content, path)
         return path
+
+    def _with_scan_error(self) -> Parameters:
+        """The parameters as this scan's poses want them; those of a mesh as they are."""
+        if self._source() == "mesh":
+            return self.parameters
+        health = self.reconstruction().pose_health
+        return with_scan_error(self.parameters, health.sd_height_m, len(health.views))
 
     def _known_motions(self) -> PourMotions | None:
         """What was found for a cell's arm, if it belongs to these pours."""
@@ -356,13 +369,7 @@ class Pipeline:
         return CollisionModel.load(folder) if (folder / "collision.json").is_file() else None
 
     def _load_imagination(self) -> Imagination:
-        containability, pouring = self.session.folder("containability"), self.session.folder("pouring")
-        choice = read_json(pouring / "choice.json")["choice"]
         records = [self.session.record(stage) for stage in ("containability", "pouring")]
         seconds = [record.seconds if record else 0.0 for record in records]
-        return Imagination(
-            Containability.load(containability),
-            PourGrid.load(pouring) if choice is not None else None,
-            PourChoice.from_table(choice) if choice is not None else None,
-            *seconds,
-        )
+        folders = self.session.folder("containability"), self.session.folder("pouring")
+        return kept_imagination.load(*folders, self.parameters.pouring.cup, *seconds)

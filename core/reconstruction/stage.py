@@ -22,7 +22,7 @@ from core.reconstruction.segmentation import Part, find_object, find_table, touc
 from core.reconstruction.surface import extract_surface, largest_piece
 from core.reconstruction.truncation import choose_truncation, view_error_m
 from core.reconstruction.tsdf import TsdfVolume
-from core.reconstruction.unseen import cut_at_height, cut_at_table, fill_unseen
+from core.reconstruction.unseen import cut_at_height, cut_at_table, fill_unseen, keep_floor
 from core.reconstruction.view_surfaces import view_surfaces
 from core.scan.crop_box import crop_box_of
 from core.scan.model import Scan
@@ -108,7 +108,8 @@ def _fuse_finely(
 
 
 def _down_to_support(found: _Found, support_m: float) -> Part:
-    return found.part.down_to(int((support_m - found.volume.origin_m[2]) / found.volume.voxel_m) - 1)
+    """Three layers more, in which a low floor may seem to lie."""
+    return found.part.down_to(int((support_m - found.volume.origin_m[2]) / found.volume.voxel_m) - 3)
 
 
 def _support_height_m(
@@ -138,6 +139,8 @@ def _object_mesh(found: _Found, parameters: ReconstructionParameters, support_m:
     if table is not None:
         distance = cut_at_table(distance, volume, part, table, parameters.plane_margin_m)
     elif solid:
+        error_m = volume.falloff_m if np.isfinite(volume.falloff_m) else volume.voxel_m
+        distance = keep_floor(distance, volume, part, support_m, error_m)
         distance = cut_at_height(distance, volume, part, support_m)
     mesh = extract_surface(distance, volume.centers_m(part.low), volume.voxel_m)
     if len(mesh.faces) == 0:

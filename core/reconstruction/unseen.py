@@ -20,6 +20,10 @@ SMALLEST_DISTANCE = np.float32(1e-4)
 """Marching cubes makes faces without area where a distance is exactly zero."""
 
 
+FLOOR_VOXELS = 1.5
+"""Thinner than a voxel, a floor may lie between two of them and be lost."""
+
+
 def fill_unseen(volume: TsdfVolume, part: Part) -> DistanceGrid:
     """Distances (x, y, z) of the part with -1 in every voxel that only views from behind a surface know of.
 
@@ -34,6 +38,31 @@ def cut_at_height(distance: DistanceGrid, volume: TsdfVolume, part: Part, height
     """Remove what lies below a horizontal plane in the base frame."""
     _, _, z = _centers(volume, part)
     return _above(distance, z - height_m, volume.truncation_m)
+
+
+def keep_floor(
+    distance: DistanceGrid, volume: TsdfVolume, part: Part, support_m: float, error_m: float
+) -> DistanceGrid:
+    """Give what stands on the support a floor of `FLOOR_VOXELS` where it was seen to have one at all.
+
+    The inside of a low floor lies so near the support that noise puts half of it below: cut there, it is
+    full of holes. Where a column is solid anywhere from a little below the support to a voxel above it,
+    something kept the views from looking through to the table.
+
+    Args:
+        distance: (x, y, z) of the part, before it is cut at the support; below that it is filled, too.
+        volume: it is taken from.
+        part: it covers; reaches a little below the support.
+        support_m: height of the support.
+        error_m: how far a surface may err.
+    """
+    _, _, z = _centers(volume, part)
+    near = (z > support_m - error_m - volume.voxel_m) & (z < support_m + volume.voxel_m)
+    stands = np.any((distance < 0) & near, axis=2, keepdims=True)
+    thickness_m = FLOOR_VOXELS * volume.voxel_m
+    floor = np.abs(z - support_m - thickness_m / 2) - thickness_m / 2
+    kept = np.where(stands, np.minimum(distance, floor / volume.truncation_m), distance)
+    return kept.astype(np.float32)
 
 
 def cut_at_table(

@@ -7,7 +7,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+from core.imagination.amount.result import Amount
+from core.imagination.capacity.result import Capacity
+from core.imagination.holding.result import Holding
 from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.risk.results import PourRisk
 from core.mesh import TriangleMesh
 from core.motion.pour.choosing import PourMotions
 from core.parameters import Parameters
@@ -37,7 +41,12 @@ class ReportContent:
         reconstruction: None when the mesh was given.
         quality: of the scan; None when the mesh was given.
         pours: None when none were imagined.
+        capacity: what the object holds; None when Omega decided, or nothing stayed.
+        holding: how firmly; as `capacity`.
+        amount: how many candies shall go in; as `capacity`.
         choice: None when there is no pour to choose.
+        risk: of the pours; None when no tries were made.
+        paper_choice: what the paper's rule says.
         scan_pictures: caption to picture, small; one a view.
         pictures: caption to picture; wide ones get a row of their own.
         films: caption to film.
@@ -59,7 +68,12 @@ class ReportContent:
     reconstruction: Reconstruction | None = None
     quality: ScanQuality | None = None
     pours: PourGrid | None = None
+    capacity: Capacity | None = None
+    holding: Holding | None = None
+    amount: Amount | None = None
     choice: PourChoice | None = None
+    risk: PourRisk | None = None
+    paper_choice: PourChoice | None = None
     scan_pictures: Mapping[str, Media] = field(default_factory=dict)
     pictures: Mapping[str, Media] = field(default_factory=dict)
     films: Mapping[str, Media] = field(default_factory=dict)

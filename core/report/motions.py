@@ -8,11 +8,9 @@ from datetime import datetime
 
 from core.imagination.results import PourChoice, PourGrid
 from core.motion.pour.choosing import PourMotions
-from core.report.sentences import direction_text
+from core.report.sentences import MM, direction_text, place_text
 from core.session.operator_choice import OperatorChoice
 from core.session.pour_runs import PourRun
-
-MM = 1000.0
 
 
 @dataclass(frozen=True)
@@ -26,16 +24,16 @@ class MotionRow:
 
 def motion_sentence(motions: PourMotions, grid: PourGrid) -> str:
     """Say how many pours the arm can make, and whether that changed the choice and why."""
-    choice, paper = motions.choice, motions.paper_choice
+    choice, free = motions.choice, motions.free_choice
     n = len(motions.pours)
     if choice is None:
-        return f"The arm can make none of the {n} pours: {motions.at(paper.i, paper.j).reason}"
+        return f"The arm can make none of the {n} pours: {motions.at(free.i, free.j).reason}"
     said = f"The arm can make {motions.n_feasible} of the {n} pours"
     if not motions.is_changed:
         return f"{said}, the chosen one among them."
     return (
-        f"{said}. The best by imagination alone, from {place_text(grid, paper.i, paper.j)}, is not one of "
-        f"them: {motions.at(paper.i, paper.j).reason} "
+        f"{said}. The best by imagination alone, from {place_text(grid, free.i, free.j)}, is not one of "
+        f"them: {motions.at(free.i, free.j).reason} "
         f"So it pours from {place_text(grid, choice.i, choice.j)}."
     )
 
@@ -52,11 +50,6 @@ def operator_sentence(operator: OperatorChoice, grid: PourGrid, program: PourCho
         f"Chosen by the operator, from {place}: {reason} "
         f"(the program would choose {place_text(grid, program.i, program.j)})."
     )
-
-
-def place_text(grid: PourGrid, i: int, j: int) -> str:
-    """Return where a pour's pivot lies, such as '45° at 31 mm'."""
-    return f"{direction_text(float(grid.theta_rad[i]))} at {grid.indent_m[j] * MM:.0f} mm"
 
 
 def motion_rows(motions: PourMotions, grid: PourGrid) -> list[MotionRow]:

@@ -6,20 +6,31 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from core.imagination.results import Containability
+from core.imagination.amount.words import amount_text
+from core.imagination.holding.words import holding_sentence
+from core.imagination.results import Containability, PourGrid
 from core.report.content import ReportContent
 from core.report.footprint import footprint_plot
 from core.report.media import data_uri, embed_films, embed_pictures
 from core.report.motions import motion_reasons, motion_rows, motion_sentence, operator_sentence, run_rows
 from core.report.pour_map import pour_map
-from core.report.sentences import has_spread, omega_texts, pours_sentence, verdict_sentence
+from core.report.sentences import (
+    has_spread,
+    omega_texts,
+    paper_verdict_sentence,
+    pours_sentence,
+    risk_sentence,
+    verdict_sentence,
+)
 from core.report.tables import (
     MM,
     health_sentence,
+    holding_facts,
     object_facts,
     parameter_rows,
     pour_rows,
     refinement_sentence,
+    risk_rows,
     time_rows,
     view_rows,
 )
@@ -66,6 +77,13 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         "created": _readable_time(content.created),
         "found": found,
         "verdict": verdict_sentence(found),
+        "paper_verdict": "" if found.verdict is None else paper_verdict_sentence(found),
+        "holding_facts": holding_facts(content.capacity, content.holding),
+        "capacity_remark": "" if content.capacity is None else content.capacity.explanation,
+        "holding_said": "" if content.holding is None else holding_sentence(content.holding),
+        "amount_said": ""
+        if content.amount is None or not found.is_open_container
+        else amount_text(content.amount),
         "pours_said": pours_sentence(found, content.pours, content.choice),
         "footprint_plot": _both(footprint_plot(found), footprint_plot(found, dark=True)),
         "pictures": embed_pictures(content.pictures),
@@ -101,9 +119,17 @@ def _pour_data(content: ReportContent) -> dict[str, Any]:
     return {
         "pour_map": _both(light, dark),
         "pour_rows": pour_rows(grid, content.choice),
+        "risk_said": _risk_said(content, grid),
+        "risk_rows": risk_rows(grid, content.risk, content.choice),
         "indents": [f"{indent_m * MM:.0f}" for indent_m in grid.indent_m],
         "spread_said": f"; ± over {grid.n_in.shape[2]} packings of the cup" if has_spread(grid) else "",
     }
+
+
+def _risk_said(content: ReportContent, grid: PourGrid) -> str:
+    if content.risk is None or content.choice is None or content.paper_choice is None:
+        return ""
+    return risk_sentence(grid, content.risk, content.choice, content.paper_choice)
 
 
 def _operator_said(content: ReportContent) -> str:

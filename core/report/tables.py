@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from core.imagination.capacity.result import Capacity
+from core.imagination.holding.result import Holding
 from core.imagination.results import PourChoice, PourGrid
+from core.imagination.risk.results import PourRisk
 from core.mesh import TriangleMesh
 from core.mesh_topology import topology
 from core.parameters import Parameters, describe, difference
@@ -61,6 +64,44 @@ def pour_rows(grid: PourGrid, choice: PourChoice | None) -> list[PourRow]:
         )
         for i, theta_rad in enumerate(grid.theta_rad)
     ]
+
+
+def risk_rows(grid: PourGrid, risk: PourRisk | None, choice: PourChoice | None) -> list[PourRow]:
+    """Return one row a direction: tries that spilled nothing, of all; none without a risk."""
+    if risk is None:
+        return []
+    clean, n = risk.n_clean, risk.n_tries
+    return [
+        PourRow(
+            direction_text(float(theta_rad)),
+            tuple(f"{clean[i, j]} of {n[i, j]}" for j in range(clean.shape[1])),
+            f"{(risk.mean_spilled[i] * n[i]).sum() / n[i].sum():.1f}",
+            choice.j if choice is not None and choice.i == i else None,
+        )
+        for i, theta_rad in enumerate(grid.theta_rad)
+    ]
+
+
+def holding_facts(capacity: Capacity | None, holding: Holding | None) -> dict[str, str]:
+    """Return how much an object holds, and how firmly, in words; nothing where it was not imagined."""
+    if capacity is None or holding is None:
+        return {}
+    tilts = (holding.first_rad, holding.tenth_rad, holding.half_rad)
+    pushes = (holding.first_m_s2, holding.tenth_m_s2, holding.half_m_s2)
+    most = f"more than {degrees(holding.tilt_rad[-1]):.0f}°"
+    leaving = [
+        f"{most}" if not np.isfinite(tilt) else f"{degrees(tilt):.0f}°, or a push of {push:.1f} m/s²"
+        for tilt, push in zip(tilts, pushes, strict=True)
+    ]
+    fill_mm, rim_mm = MM * capacity.fill_height_m, MM * capacity.rim_height_m
+    return {
+        "Capacity": f"{capacity.n_candies:.0f} ± {capacity.spread:.0f} candies, {capacity.volume_ml:.0f} ml",
+        "Water it would hold": f"{capacity.geometric_volume_ml:.0f} ml",
+        "Height that candies fill": f"{fill_mm:.0f} of {rim_mm:.0f} mm",
+        f"First of {holding.n_load} candies leaves at": leaving[0],
+        "A tenth": leaving[1],
+        "Half": leaving[2],
+    }
 
 
 def object_facts(surface: TriangleMesh, reconstruction: Reconstruction | None) -> dict[str, str]:

@@ -16,6 +16,7 @@ from core.session.explaining import explained
 
 RUNS_FOLDER = "pours"
 EVENTS_FILE, STATES_FILE, OUTCOME_FILE = "events.jsonl", "states.csv", "outcome.json"
+_EMPTIED_FILE = "emptied.json"
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,11 @@ class PourRun:
         return any(event["kind"] == "done" for event in self.events)
 
     @property
+    def was_emptied(self) -> bool:
+        """Whether somebody took all candies out of the object after it."""
+        return (self.folder / _EMPTIED_FILE).is_file()
+
+    @property
     def sentence(self) -> str:
         """How it ended, for people."""
         if self.is_done:
@@ -129,9 +135,23 @@ def write_outcome(folder: Path, outcome: Outcome) -> None:
     Raises:
         SessionError: the folder cannot be written.
     """
-    entered = datetime.now(timezone.utc).isoformat(timespec="seconds")
     with explained(folder):
-        write_json(folder / OUTCOME_FILE, vars(outcome) | {"entered": entered})
+        write_json(folder / OUTCOME_FILE, vars(outcome) | {"entered": _now()})
+
+
+def note_emptied(session: Path) -> None:
+    """Keep that somebody has taken all candies out of the object; without a run there were none.
+
+    Raises:
+        SessionError: the folder cannot be written.
+    """
+    for folder in _run_folders(session)[-1:]:
+        with explained(folder):
+            write_json(folder / _EMPTIED_FILE, {"noted": _now()})
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).isoformat(timespec="seconds")
 
 
 def _run_folders(session: Path) -> list[Path]:

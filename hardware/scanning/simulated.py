@@ -19,6 +19,7 @@ def simulate_scan(
     reporter: Reporter,
     noise: DepthNoise | None = None,
     is_perfect: bool = False,
+    cell: CellSettings | None = None,
 ) -> Scan:
     """Put an object on the simulated cell's platform at random and take its views.
 
@@ -30,14 +31,15 @@ def simulate_scan(
         reporter: told after each view.
         noise: the camera's; none: the cell's.
         is_perfect: no noise at all and exactly known poses.
+        cell: a simulated one, with its own noise; none: the shipped one.
 
     Raises:
         InputError: the object does not fit into the crop box.
         Cancelled: somebody asked to stop.
     """
-    settings = simulated_cell(noise, is_perfect)
-    with open_cell(settings, world_with(mesh, settings.place, seed), seed) as cell:
-        procedure = ScanProcedure(cell, None, reporter)
+    settings = simulated_cell(noise, is_perfect) if cell is None else cell
+    with open_cell(settings, world_with(mesh, settings.place, seed), seed) as opened:
+        procedure = ScanProcedure(opened, None, reporter)
         procedure.take(name_views(settings.scan.views_rad))
         return procedure.scan()
 

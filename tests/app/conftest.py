@@ -60,14 +60,10 @@ def scan_folder(tmp_path):
 @pytest.fixture(scope="session")
 def made_sessions(tmp_path_factory):
     """A container (mug) and something that is none (block), each made when first asked for."""
-    from tests.app.sessions import make_session
-
-    made = {}
+    from tests.app.sessions import made_once, make_session
 
     def make(name):
-        if name not in made:
-            made[name] = make_session(tmp_path_factory.mktemp(name) / name, name)
-        return made[name]
+        return made_once(tmp_path_factory, name, lambda folder: make_session(folder, name))
 
     return make
 

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+
+import pytest
+from filelock import FileLock
 
 from app import commands
 from app.jobs.session_work import SessionTask, working_on
@@ -16,14 +21,33 @@ from hardware.cell import SIMULATED_CELL, read_cell
 
 QUICK = {
     "reconstruction.voxel_m": 0.004,
-    "pouring.n_packings": 1,
     "containability.n_max": 150,
+    "capacity.n_fillings": 1,
+    "capacity.n_aimed": 20,
+    "capacity.lattice_points": 100_000,
+    "holding.n_load": 6,
+    "holding.tilt_step_rad": 0.2,
+    "risk.n_tries": 4,
 }
 
 
 def quick_parameters() -> Parameters:
-    """Coarser than the defaults, and with one packing."""
+    """Coarser than the defaults, and with fewer candies."""
     return apply_settings(Parameters(), QUICK)
+
+
+def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
+    """Return a folder that is made once for all processes of a test run; it is to be copied, not changed."""
+    base = factory.getbasetemp()
+    root = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    folder, is_made = root / "made" / name, root / f"{name}.made"
+    with FileLock(root / f"{name}.lock"):
+        if not is_made.exists():
+            shutil.rmtree(folder, ignore_errors=True)
+            folder.parent.mkdir(exist_ok=True)
+            make(folder)
+            is_made.touch()
+    return folder
 
 
 def make_session(folder: Path, name: str) -> Path:

@@ -152,7 +152,7 @@ def test_a_non_manifold_mesh_is_refused(tmp_path, refused):
     ("settings", "said"),
     [
         (["particle.diameter_m=0.05", "particle.shape=sphere"], "smaller than a candy"),
-        (["pouring.n_pour=1000"], "cannot hold 1000 candies"),
+        (["pouring.n_pour=1000", "containability.verdict=omega"], "cannot hold 1000 candies"),
         (["pouring.npour=10"], "did you mean 'pouring.n_pour'"),
         (["pouring.n_pour=0"], "allowed is 1 to 1000"),
         (["pouring.n_pour"], "lacks a value"),

@@ -1,7 +1,5 @@
 """A person's pour instead of the program's: from the command to the run's log and the report."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -21,20 +19,15 @@ from hardware.cell.scene import ARMS, motion_scene
 from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
 from hardware.robots.simulated_gripper import SimulatedGripper
-from tests.app.sessions import make_session, quick_parameters
+from tests.app.sessions import quick_parameters
 
 WHY = "the handle is in the way"
 
 
-@pytest.fixture(scope="module")
-def judged(tmp_path_factory):
-    """A mug, scanned, imagined, and its pours judged for the simulated cell's arm."""
-    return make_session(tmp_path_factory.mktemp("judged") / "mug", "mug")
-
-
 @pytest.fixture
-def session(judged, tmp_path):
-    return shutil.copytree(judged, tmp_path / "mug")
+def session(mug_session):
+    """A mug, scanned, imagined, and its pours judged for the simulated cell's arm."""
+    return mug_session
 
 
 @pytest.fixture

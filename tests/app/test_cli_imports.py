@@ -5,7 +5,10 @@ from __future__ import annotations
 import subprocess
 import sys
 
-HEAVY = ("PySide6", "pyqtgraph", "pybullet", "open3d", "trimesh", "matplotlib", "numba", "rtde_control")
+HEAVY = (
+    *("PySide6", "pyqtgraph", "pybullet", "open3d", "trimesh", "matplotlib", "numba", "optuna"),
+    "rtde_control",
+)
 
 
 def test_the_command_line_imports_nothing_heavy():

@@ -11,7 +11,10 @@ import pytest
 
 from app import cli
 from core.resources import RESOURCES
+from core.session.cups import next_cup
+from core.session.pour_runs import PourRun
 from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.app.sessions import made_once
 from tests.app.test_scan_command import QUICK, SIMULATED
 
 pytest.importorskip("rtde_control")
@@ -26,15 +29,17 @@ max_m = [-0.4, 0.2, 0.5]
 @pytest.fixture(scope="module")
 def imagined(tmp_path_factory):
     """A bowl, scanned and imagined."""
-    session = tmp_path_factory.mktemp("imagined") / "session"
-    words = ["poursight", "scan", "--session", str(session), "--object", "bowl", *QUICK]
-    for line in (words, ["poursight", "imagine", str(session)]):
-        with pytest.MonkeyPatch.context() as patch:
-            patch.setattr(sys, "argv", line)
-            with pytest.raises(SystemExit) as leaving:
-                cli.main()
-            assert not leaving.value.code
-    return session
+
+    def imagine(session):
+        words = ["poursight", "scan", "--session", str(session), "--object", "bowl", *QUICK]
+        for line in (words, ["poursight", "imagine", str(session)]):
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr(sys, "argv", line)
+                with pytest.raises(SystemExit) as leaving:
+                    cli.main()
+                assert not leaving.value.code
+
+    return made_once(tmp_path_factory, "imagined_bowl", imagine)
 
 
 @pytest.fixture
@@ -93,6 +98,52 @@ def test_nothing_moves_without_a_confirmation(refused, session, monkeypatch):
     monkeypatch.setattr("rich.console.Console.input", lambda *a, **k: "no")
     assert "nothing moved" in refused("pour", session)
     assert not (session / "pours").exists()
+
+
+def test_more_than_fits_is_refused_before_anything_moves(poursight, refused, session):
+    too_many = (
+        "--set=containability.verdict=capacity",
+        "--set=capacity.n_fillings=1",
+        "--set=holding.n_load=6",
+        "--set=pouring.n_pour=900",
+        "--set=risk.n_tries=0",
+    )
+    code, out, _ = poursight("imagine", session, *too_many)
+    assert code == 0
+    assert "900 candies are more than 1.3 times the" in out
+    assert "Nothing is poured. 900 candies are more than 1.3 times the" in refused("pour", session, "--yes")
+    assert not (session / "pours").exists()
+
+
+def test_several_cups_are_poured_one_after_the_other(poursight, refused, session, tmp_path):
+    two_cups = (
+        "--set=containability.verdict=capacity",
+        "--set=capacity.n_fillings=1",
+        "--set=holding.n_load=6",
+        "--set=pouring.cup.length_m=0.05",
+        "--set=pouring.n_pour=40",
+        "--set=risk.n_tries=0",
+    )
+    code, out, err = poursight("imagine", session, *two_cups)
+    assert code == 0, err
+    assert "Pour 2 cups of 20 and 20 candies" in out
+    cell = real_cell(tmp_path, "127.0.0.1")
+    assert "nobody would fill them" in refused("pour", session, "--yes", "--cell", cell)
+
+    code, out, err = poursight("pour", session, "--yes")
+    assert code == 0, err
+    first, second = (
+        json.loads((session / "pours" / name / "outcome.json").read_text()) for name in ("0001", "0002")
+    )
+    assert first["n_candies"] == second["n_candies"] == 20
+    assert (first["facts"]["n_before"], second["facts"]["n_before"]) == (0, first["facts"]["n_in_object"])
+    assert second["facts"]["n_in_object"] > first["facts"]["n_in_object"]
+
+    shutil.rmtree(session / "pours" / "0002")
+    digest = PourRun.load(session / "pours" / "0001").imagination
+    assert next_cup(session, digest, (20, 20)).number == 2
+    assert "Nothing moves without a confirmation" in refused("pour", session, "--emptied")
+    assert next_cup(session, digest, (20, 20)).number == 1
 
 
 def test_no_outcome_before_a_pour(refused, session):

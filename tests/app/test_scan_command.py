@@ -12,7 +12,8 @@ SIMULATED = RESOURCES / "cells" / "simulated.toml"
 QUICK = [
     "--set=containability.n_max=64",
     "--set=containability.n_min=40",
-    "--set=pouring.n_packings=1",
+    "--set=containability.verdict=omega",
+    "--set=risk.n_tries=4",
     "--set=pouring.n_pour=20",
     "--set=evidence.films=false",
 ]

@@ -21,8 +21,7 @@ from core.collision import CollisionModel, build_collision_model
 from core.errors import Cancelled
 from core.geometry import transform_points
 from core.imagination.body import body_files
-from core.imagination.containability import drop_task
-from core.imagination.imagine import object_at_rest
+from core.imagination.containability import drop_task, object_at_rest
 from core.imagination.results import Containability
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh

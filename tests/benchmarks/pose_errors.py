@@ -17,8 +17,8 @@ import open3d as o3d
 from core.collision import build_collision_model
 from core.geometry import FloatArray
 from core.imagination.body import body_files
-from core.imagination.containability import drop_task
-from core.imagination.imagine import WORKER_MODULE, object_at_rest
+from core.imagination.containability import drop_task, object_at_rest
+from core.imagination.imagine import WORKER_MODULE
 from core.imagination.results import Containability
 from core.mesh import TriangleMesh
 from core.parameters import Parameters, apply_settings

@@ -17,10 +17,10 @@ from typing import Any
 
 from core.collision import CollisionModel, read_collision_model
 from core.imagination.body import body_files
-from core.imagination.containability import drop_task
+from core.imagination.containability import drop_task, object_at_rest
 from core.imagination.cup import cup_parts
 from core.imagination.engine import bullet
-from core.imagination.imagine import WORKER_MODULE, imagine, object_at_rest
+from core.imagination.imagine import WORKER_MODULE, imagine
 from core.imagination.packing import packing_task
 from core.imagination.pouring import indentations_m, pivots_m, pour_directions_rad
 from core.imagination.pours import Pour, replay_task
@@ -91,7 +91,7 @@ def print_engine_share(model: CollisionModel, parameters: Parameters) -> None:
             thetas = pour_directions_rad(found.footprint, parameters.pouring)
             pivots = pivots_m(found.footprint, thetas, indentations_m(target.aabb_m, parameters.pouring))
             pours = [
-                replay_task(target, run, Pour(pivots[i, j], float(thetas[i])), parameters, True)
+                replay_task(target, run, Pour(pivots[i, j], float(thetas[i])).T_world_E, parameters, True)
                 for i in range(len(thetas))
                 for j in range(3)
             ]

@@ -103,6 +103,21 @@ def test_closing_ends_the_processes():
     assert not [number for number in numbers if psutil.pid_exists(number)]
 
 
+@pytest.mark.parametrize("seconds", [0.0, 60.0], ids=["idle", "busy"])
+def test_no_thread_of_the_executor_is_left_when_it_is_closed(seconds):
+    """One that is still closing its pipes when Python ends writes a traceback to the terminal."""
+    before = set(threading.enumerate())
+    reporter = Reporter()
+    with WorkerPool(2) as workers:
+        if seconds:
+            threading.Timer(1.5, reporter.cancel).start()
+            with pytest.raises(Cancelled):
+                workers.run([Task(sleep_deaf, (seconds,)) for _ in range(8)], "sleep", reporter)
+        else:
+            workers.run([Task(process_number, ())], "numbers", reporter)
+    assert not [t.name for t in set(threading.enumerate()) - before if not isinstance(t, threading.Timer)]
+
+
 def test_workers_die_with_a_parent_that_is_killed(tmp_path):
     script = (
         "import sys, time\n"

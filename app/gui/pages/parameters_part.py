@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFileDialog, QPushButton, QToolButton, QVBoxLayout
 
 from app.gui.desk.desk import Desk
 from app.gui.desk.workspace import Workspace
-from app.gui.pages.saved_presets import preset_names, save_preset
+from app.gui.pages.saved_presets import preset_names, preset_tips, save_preset
 from app.gui.theme import GRID_PX
 from app.gui.views.parameter_editor import ParameterEditor
 from core.errors import InputError, SessionError
@@ -31,7 +31,8 @@ class ParametersPart(QWidget):
         self.setObjectName("parameters_part")
         self._workspace = desk.workspace
         self._told = desk.told
-        self.editor = ParameterEditor(groups, preset_names())
+        self.editor = ParameterEditor(groups)
+        self._offer_presets()
         self.editor.edited.connect(self._edit)
         self.editor.preset_chosen.connect(self.choose_preset)
         self._save = QPushButton(self.tr("Save as preset ..."))
@@ -64,8 +65,12 @@ class ParametersPart(QWidget):
         except SessionError as error:
             self._told.emit(str(error))
             return
-        self.editor.set_preset_names(preset_names())
+        self._offer_presets()
         self.choose_preset(str(path))
+
+    def _offer_presets(self) -> None:
+        names = preset_names()
+        self.editor.set_preset_names(names, preset_tips(names))
 
     def _ask_where(self) -> None:
         folder = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from PySide6.QtCore import QSettings
 
-from core.errors import SessionError
-from core.files import write_json
+from app.presets import presets_folder
+from core.errors import PoursightError, SessionError
+from core.files import read_json, write_json
 from core.parameters import PRESET_NAMES, Parameters, difference
 from core.session import explained
 
@@ -16,8 +17,15 @@ _MOST = 12
 
 
 def preset_names() -> list[str]:
-    """Return the shipped presets and the files of the saved ones that are still there."""
-    return [*PRESET_NAMES, *(path for path in _remembered() if Path(path).is_file())]
+    """Return the shipped presets, those saved under a name, and remembered files that are still there."""
+    named = [str(path) for path in sorted(presets_folder().glob("*.json"))]
+    others = [path for path in _remembered() if path not in named and Path(path).is_file()]
+    return [*PRESET_NAMES, *named, *others]
+
+
+def preset_tips(names: list[str]) -> dict[str, str]:
+    """Return what the files among some presets say of themselves, such as what they were fitted to."""
+    return {name: f"{said}\n{name}" for name in names if (said := _description(name))}
 
 
 def save_preset(path: Path, parameters: Parameters) -> None:
@@ -41,6 +49,15 @@ def remember_preset(path: Path) -> None:
     """Offer a preset's file from now on."""
     others = [known for known in _remembered() if known != str(path)]
     QSettings().setValue(_KEY, [str(path), *others][:_MOST])
+
+
+def _description(name: str) -> str:
+    if not name.endswith(".json"):
+        return ""
+    try:
+        return str(read_json(Path(name)).get("description", ""))
+    except PoursightError:
+        return ""
 
 
 def _remembered() -> list[str]:

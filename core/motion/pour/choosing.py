@@ -1,4 +1,4 @@
-"""Which pour to make with this arm: the paper's rule (Sec. III-B) among those that the arm can make."""
+"""Which pour to make with this arm: the surest among those that the arm can make."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from core.files import read_json, write_json
 from core.geometry import BoolArray
 from core.imagination.choice import choose_pour
 from core.imagination.results import PourChoice, PourGrid
+from core.imagination.risk.results import PourRisk
 from core.motion.pour.plan import PourFeasibility
 from core.parameters.imagination import CupParameters
 
@@ -25,19 +26,25 @@ class PourMotions:
     Attributes:
         pours: all of them, direction by direction.
         choice: the one to make; none if the arm can make none.
-        paper_choice: what the paper's rule says of all pours, whether or not the arm can make it.
+        free_choice: what the imagination alone would choose, whether or not the arm can make it.
     """
 
     pours: tuple[PourFeasibility, ...]
     choice: PourChoice | None
-    paper_choice: PourChoice
+    free_choice: PourChoice
 
     @classmethod
-    def of(cls, pours: tuple[PourFeasibility, ...], grid: PourGrid, cup: CupParameters) -> PourMotions:
-        """Choose among the pours that are feasible."""
-        paper_choice = choose_pour(grid, cup)
-        assert paper_choice is not None, "without a mask every pour competes"
-        return cls(pours, choose_pour(grid, cup, _mask(pours, grid)), paper_choice)
+    def of(
+        cls,
+        pours: tuple[PourFeasibility, ...],
+        grid: PourGrid,
+        cup: CupParameters,
+        risk: PourRisk | None,
+    ) -> PourMotions:
+        """Choose among the pours that are feasible: the surest, or by the paper's rule without a risk."""
+        free_choice = choose_pour(grid, cup, risk=risk)
+        assert free_choice is not None, "without a mask every pour competes"
+        return cls(pours, choose_pour(grid, cup, _mask(pours, grid), risk), free_choice)
 
     @property
     def n_feasible(self) -> int:
@@ -47,8 +54,8 @@ class PourMotions:
     @property
     def is_changed(self) -> bool:
         """Whether the arm decided, and not the imagination alone."""
-        choice, paper = self.choice, self.paper_choice
-        return choice is None or (choice.i, choice.j) != (paper.i, paper.j)
+        choice, free = self.choice, self.free_choice
+        return choice is None or (choice.i, choice.j) != (free.i, free.j)
 
     def at(self, i: int, j: int) -> PourFeasibility:
         """Return what was found of one pour."""
@@ -59,7 +66,7 @@ class PourMotions:
         table: dict[str, Any] = {
             "pours": [asdict(pour) for pour in self.pours],
             "choice": None if self.choice is None else self.choice.to_table(),
-            "paper_choice": self.paper_choice.to_table(),
+            "free_choice": self.free_choice.to_table(),
         }
         write_json(folder / MOTION_FILE, table)
 
@@ -71,7 +78,7 @@ class PourMotions:
         return cls(
             tuple(PourFeasibility(**pour) for pour in table["pours"]),
             None if choice is None else PourChoice.from_table(choice),
-            PourChoice.from_table(table["paper_choice"]),
+            PourChoice.from_table(table.get("free_choice") or table["paper_choice"]),  # its former name
         )
 
 

@@ -8,7 +8,7 @@ from math import asin, cos, floor, pi, radians, sin
 import numpy as np
 
 from core.errors import InputError
-from core.geometry import FloatArray
+from core.geometry import FloatArray, ellipsoid_inertia_kg_m2
 from core.imagination.cup import inner_radius_m
 from core.parameters.imagination import CupParameters
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
@@ -19,6 +19,8 @@ _SKIN = 0.7
 """Thickness of a candy's skin, relative to half its thickness: while only skins touch, contacts are quick to
 find and exact, and a fast candy is seen by a wall before it is in it."""
 _MAX_TILT_RAD = radians(20)
+_BATCH_STREAM = 4
+"""Of the seed: 0 and 1 are the candies' sizes and places, 2 and 3 the errors of object and cup."""
 _APART = 1.02
 _LARGEST_SD = 3.0
 
@@ -46,9 +48,10 @@ def fill_cup(cup: CupParameters, settings: OutcomeSettings) -> Candies:
     """
     n = settings.n_candies
     drawn = np.random.default_rng([settings.seed, 0]).standard_normal(n)
-    scales = 1 + settings.size_spread * np.clip(drawn, -_LARGEST_SD, _LARGEST_SD)
+    batch = _batch_scale(settings)
+    scales = batch * (1 + settings.size_spread * np.clip(drawn, -_LARGEST_SD, _LARGEST_SD))
     random = np.random.default_rng([settings.seed, 1])
-    largest = 1 + _LARGEST_SD * settings.size_spread
+    largest = batch * (1 + _LARGEST_SD * settings.size_spread)
     width_m = _APART * largest * settings.candy_diameter_m
     # A tilted tablet is the tallest that a candy of this diameter and thickness can be.
     height_m = (
@@ -63,11 +66,18 @@ def fill_cup(cup: CupParameters, settings: OutcomeSettings) -> Candies:
         layers.append(np.column_stack([places, np.full(len(places), below_m + height_m / 2)]))
     positions = np.vstack([np.empty((0, 3)), *layers])
     if len(positions) < n:
+        diameter_mm = batch * settings.candy_diameter_m * 1000
         raise InputError(
-            f"The cup has room for {len(positions)} candies of {settings.candy_diameter_m * 1000:.1f} mm, "
+            f"The cup has room for {len(positions)} candies of {diameter_mm:.1f} mm, "
             f"not for {n}; lower n_candies or take a larger cup."
         )
     return Candies(scales, positions[:n], _tilted(n, random))
+
+
+def _batch_scale(settings: OutcomeSettings) -> float:
+    """How large the candies of this pour are, relative to the usual ones."""
+    drawn = np.random.default_rng([settings.seed, _BATCH_STREAM]).uniform(-1, 1)
+    return 1 + settings.batch_spread * float(drawn)
 
 
 def hull_m(settings: OutcomeSettings, scale: float) -> FloatArray:
@@ -94,12 +104,13 @@ def skin_m(settings: OutcomeSettings, scale: float) -> float:
 def inertia_kg_m2(settings: OutcomeSettings, scale: float) -> FloatArray:
     """Principal moments (3,) of a solid candy; Bullet would take those of a box around it and its margin."""
     mass_kg = settings.candy_mass_kg * scale**3
-    across_m, up_m = scale * settings.candy_diameter_m / 2, scale * settings.candy_height_m / 2
     if settings.candy_shape == "tablet":
+        across_m, up_m = scale * settings.candy_diameter_m / 2, scale * settings.candy_height_m / 2
         about_x = across_m**2 / 4 + up_m**2 / 3
         return mass_kg * np.array([about_x, about_x, across_m**2 / 2])
-    about_x = (across_m**2 + up_m**2) / 5
-    return mass_kg * np.array([about_x, about_x, 2 * across_m**2 / 5])
+    return ellipsoid_inertia_kg_m2(
+        mass_kg, scale * settings.candy_diameter_m, scale * settings.candy_height_m
+    )
 
 
 def _layer(radius_m: float, apart_m: float, random: np.random.Generator) -> FloatArray:

@@ -9,22 +9,35 @@ from core.mesh import TriangleMesh
 
 _FLAT_M2 = 1e-12
 """Twice the area, seen from above, below which a face is upright and carries nothing."""
+_SAMPLES = np.array(
+    [
+        (0.0, 0.0, 0.0),
+        *((0.8 * np.cos(angle), 0.8 * np.sin(angle), 0.0) for angle in np.arange(8) * np.pi / 4),
+    ]
+)
+"""Points of a candy seen from above, in radii."""
 
 
 def in_object(
-    mesh: TriangleMesh, positions_m: FloatArray, platform_height_m: float, rim_margin_m: float
+    mesh: TriangleMesh,
+    positions_m: FloatArray,
+    platform_height_m: float,
+    rim_margin_m: float,
+    candy_radius_m: float,
 ) -> BoolArray:
     """Return (N,) which of the candies at rest at (N, 3) are in the object.
 
     In it are those within the AABB's outline, above the platform, no higher than `rim_margin_m` above the
-    AABB, and with the object's own surface somewhere beneath them: a candy on the platform beside a round
-    bowl, in a corner of its AABB, was spilled, and so was one inside a ring that has no floor.
+    AABB, and with the object's own surface somewhere beneath most of them: a candy on the platform beside a
+    round bowl, in a corner of its AABB, was spilled, and so was one inside a ring that has no floor. One that
+    lies over a crack narrower than itself was not.
 
     Args:
         mesh: the object as it stood, in the base frame.
         positions_m: the candies' centres.
         platform_height_m: top of the platform.
         rim_margin_m: for heaps.
+        candy_radius_m: how far a candy reaches from its centre.
     """
     low, high = mesh.aabb_min_m, mesh.aabb_max_m
     height = positions_m[:, 2]
@@ -34,7 +47,8 @@ def in_object(
         & (height < high[2] + rim_margin_m)
     )
     for candy in np.flatnonzero(inside).tolist():
-        inside[candy] = _surface_beneath(mesh, positions_m[candy])
+        beneath = [_surface_beneath(mesh, positions_m[candy] + shift) for shift in candy_radius_m * _SAMPLES]
+        inside[candy] = 2 * sum(beneath) > len(beneath)
     return inside
 
 

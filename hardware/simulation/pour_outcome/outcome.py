@@ -10,17 +10,18 @@ import numpy as np
 
 from core.errors import InputError
 from core.files import read_arrays, read_json, write_arrays, write_json
-from core.geometry import BoolArray, FloatArray, make_pose, rotation_z, transform_points
+from core.geometry import BoolArray, FloatArray, invert_pose, make_pose, rotation_z, transform_points
 from core.imagination.body import body_files
 from core.imagination.cup import cup_parts
 from core.imagination.recording import Recording
 from core.mesh import TriangleMesh
 from core.parameters.imagination import CupParameters
 from core.progress import Reporter
-from core.workers import WorkerPool
+from core.workers import TaskRunner
 from hardware.simulation.pour_outcome.candies import fill_cup
 from hardware.simulation.pour_outcome.counting import in_object
 from hardware.simulation.pour_outcome.driven_path import DrivenPath, cup_motion
+from hardware.simulation.pour_outcome.lying import NONE_LYING, LyingCandies
 from hardware.simulation.pour_outcome.playing import PlayedPour, pour_task
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 from hardware.simulation.pour_outcome.table_world import Bodies, PlatformBox
@@ -33,7 +34,7 @@ _TABLE_FILE, _ARRAY_FILE = "outcome.json", "outcome.npz"
 
 @dataclass(frozen=True)
 class TableOutcome:
-    """Where N candies ended.
+    """Where N candies ended: those of the cup, after them those that lay in the object before.
 
     Attributes:
         in_object: (N,) at the end above the object's surface, within its AABB.
@@ -53,8 +54,16 @@ class TableOutcome:
 
     @property
     def n_candies(self) -> int:
-        """Candies that were in the cup at first."""
+        """Candies that were in the cup, or lay in the object, at first."""
         return len(self.in_object)
+
+    @property
+    def lying(self) -> LyingCandies:
+        """The candies that lie in the object now."""
+        inside = self.in_object
+        quaternions = self.recording.quaternions[-1][inside].astype(float)
+        found = LyingCandies(self.scales[inside], self.positions_m[inside], quaternions)
+        return found.moved(invert_pose(self.T_given_stood))
 
     @property
     def n_in_object(self) -> int:
@@ -115,8 +124,9 @@ def simulate_outcome(
     table_height_m: float,
     platform: PlatformBox,
     settings: OutcomeSettings,
-    pool: WorkerPool,
+    pool: TaskRunner,
     reporter: Reporter,
+    lying: LyingCandies = NONE_LYING,
 ) -> TableOutcome:
     """Drive a cup of candies along a path over the true object and count them (Sec. IV-D).
 
@@ -131,6 +141,7 @@ def simulate_outcome(
         settings: the table's own parameters.
         pool: where to compute.
         reporter: receives the progress.
+        lying: candies that are in the object already.
 
     Raises:
         InputError: the path does not begin with the cup upright, or the cup cannot hold the candies.
@@ -152,11 +163,18 @@ def simulate_outcome(
     with body_files(object=([stood], True), cup=(parts, False)) as files:
         aabb_m = np.array([stood.aabb_min_m, stood.aabb_max_m])
         bodies = Bodies(files["object"], aabb_m, files["cup"], cup, table_height_m, platform)
-        played: PlayedPour = pool.run([pour_task(bodies, candies, motion, settings)], "outcome", reporter)[0]
-    inside = in_object(stood, played.positions_m, platform.height_m, settings.rim_margin_m) & ~played.in_cup
-    return TableOutcome(
-        inside, played.in_cup, played.positions_m, candies.scales, T_given_stood, played.recording
+        task = pour_task(bodies, candies, lying.moved(T_given_stood), motion, settings)
+        played: PlayedPour = pool.run([task], "outcome", reporter)[0]
+    lie_in = in_object(
+        stood,
+        played.positions_m,
+        platform.height_m,
+        settings.rim_margin_m,
+        settings.candy_diameter_m / 2,
     )
+    inside = lie_in & ~played.in_cup
+    scales = np.concatenate([candies.scales, lying.scales])
+    return TableOutcome(inside, played.in_cup, played.positions_m, scales, T_given_stood, played.recording)
 
 
 def _stood(mesh: TriangleMesh, settings: OutcomeSettings) -> FloatArray:

@@ -13,6 +13,7 @@ from core.parameters.imagination import CupParameters
 from core.workers import Task, report_fraction
 from hardware.simulation.pour_outcome.candies import Candies
 from hardware.simulation.pour_outcome.driven_path import CupMotion
+from hardware.simulation.pour_outcome.lying import LyingCandies
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 from hardware.simulation.pour_outcome.table_world import Bodies, TableWorld
 
@@ -29,9 +30,11 @@ class PlayedPour:
     recording: Recording
 
 
-def pour_task(bodies: Bodies, candies: Candies, motion: CupMotion, settings: OutcomeSettings) -> Task:
-    """Return the task whose result is the `PlayedPour`."""
-    return Task(_play, (bodies, candies, motion, settings))
+def pour_task(
+    bodies: Bodies, candies: Candies, lying: LyingCandies, motion: CupMotion, settings: OutcomeSettings
+) -> Task:
+    """Return the task whose result is the `PlayedPour` of the cup's candies and those lying in the object."""
+    return Task(_play, (bodies, candies, lying, motion, settings))
 
 
 def inside_cup(cup: CupParameters, T_base_cup: FloatArray, positions_m: FloatArray) -> BoolArray:
@@ -46,10 +49,12 @@ def inside_cup(cup: CupParameters, T_base_cup: FloatArray, positions_m: FloatArr
     return inside
 
 
-def _play(bodies: Bodies, candies: Candies, motion: CupMotion, settings: OutcomeSettings) -> PlayedPour:
+def _play(
+    bodies: Bodies, candies: Candies, lying: LyingCandies, motion: CupMotion, settings: OutcomeSettings
+) -> PlayedPour:
     with TableWorld(bodies, settings) as world:
-        pour = _Pour(world, bodies.cup, motion, settings)
-        pour.settle(candies)
+        pour = _Pour(world, bodies.cup, motion, settings, len(candies.scales) + len(lying.scales))
+        pour.settle(candies, lying)
         pour.follow()
         pour.wait()
         positions = world.poses()[:, :3]
@@ -60,7 +65,12 @@ class _Pour:
     """A pour as it goes on: the moment `self._at` of the motion, and the film so far."""
 
     def __init__(
-        self, world: TableWorld, cup: CupParameters, motion: CupMotion, settings: OutcomeSettings
+        self,
+        world: TableWorld,
+        cup: CupParameters,
+        motion: CupMotion,
+        settings: OutcomeSettings,
+        n_candies: int,
     ) -> None:
         self._world = world
         self._cup = cup
@@ -69,11 +79,12 @@ class _Pour:
         self._at = 0
         self._record_steps = max(round(settings.record_interval_s * settings.rate_hz), 1)
         self._rest_steps = round(settings.rest_s * settings.rate_hz)
-        self.recorder = Recorder(settings.n_candies)
+        self.recorder = Recorder(n_candies)
 
-    def settle(self, candies: Candies) -> None:
-        """Fill the standing cup and let the candies come to rest."""
+    def settle(self, candies: Candies, lying: LyingCandies) -> None:
+        """Fill the standing cup and let the candies come to rest; others lie in the object."""
         self._world.add_candies(candies, self._motion.T_base_cup[self._at], self._motion.quaternions[0])
+        self._world.add_lying(lying)
         for _ in range(round(self._settings.settle_s * self._settings.rate_hz)):
             self._drive(moving=False)
             self._world.step()

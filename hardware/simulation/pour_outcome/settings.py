@@ -39,6 +39,14 @@ class OutcomeSettings(Group):
     size_spread: float = quantity(
         0.02, "SD of a candy's size, relative to the mean size.", unit="", source=_ESTIMATE, low=0, high=0.15
     )
+    batch_spread: float = quantity(
+        0.0,
+        "The candies of one pour are larger or smaller by up to this share, all alike; how much is drawn.",
+        unit="",
+        source=f"{OURS}: sorted sweets are alike; raise it to try others",
+        low=0,
+        high=0.4,
+    )
 
     candy_friction: float = quantity(
         0.35, "Sliding friction between candies.", unit="", source=_ESTIMATE, low=0.01, high=2

@@ -18,6 +18,7 @@ from core.imagination.body import BodyFile
 from core.imagination.engine import bullet
 from core.parameters.imagination import CupParameters
 from hardware.simulation.pour_outcome.candies import Candies, hull_m, inertia_kg_m2, skin_m
+from hardware.simulation.pour_outcome.lying import LyingCandies
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 
 GRAVITY_M_S2 = 9.80665
@@ -115,6 +116,13 @@ class TableWorld:
                 [0, 0, 0], cup_quaternion.tolist(), [0, 0, 0], quaternion.tolist()
             )
             self._candies.append(self._add_candy(float(scale), position, turned))
+
+    def add_lying(self, lying: LyingCandies) -> None:
+        """Put candies where they lie in the object."""
+        for scale, position, quaternion in zip(
+            lying.scales, lying.positions_m, lying.quaternions, strict=True
+        ):
+            self._candies.append(self._add_candy(float(scale), position, tuple(quaternion.tolist())))
 
     def drive_cup(
         self,

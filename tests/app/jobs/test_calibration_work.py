@@ -15,7 +15,12 @@ from core.parameters import Parameters, apply_settings
 from core.ply import write_ply
 from hardware.simulation.objects import builtin_object
 
-QUICK = {"containability.n_max": 64, "containability.n_min": 20, "solver.substeps": 4}
+QUICK = {
+    "containability.verdict": "omega",
+    "containability.n_max": 64,
+    "containability.n_min": 20,
+    "solver.substeps": 4,
+}
 
 
 @pytest.fixture

@@ -135,7 +135,7 @@ def pours() -> PourGrid:
     n_in = np.round(np.array(P)[:, :, None] * 60).astype(np.int64)
     recordings = tuple(tuple(Recorder(60).recording() for _ in range(3)) for _ in P)
     theta, indent = np.array([0.0, np.pi]), np.array([0.01, 0.02, 0.03])
-    return PourGrid(60, n_in, theta, indent, np.zeros((2, 3, 3)), recordings)
+    return PourGrid(60, n_in, 60 - n_in, theta, indent, np.zeros((2, 3, 3)), recordings)
 
 
 def choice(i: int, j: int) -> PourChoice:

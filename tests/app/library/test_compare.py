@@ -78,7 +78,7 @@ def test_lengths_of_parameters_are_in_millimetres(make_session, rows):
     a = make_session("a", **{"reconstruction.truncation_m": None})
     b = make_session("b", **{"reconstruction.truncation_m": 0.012, "particle.diameter_m": 0.009})
     found = rows(a, b)
-    assert said(found["Parameters", "particle.diameter_m"]) == ("7 mm", "9 mm", "+2 mm")
+    assert said(found["Parameters", "particle.diameter_m"]) == ("13.2 mm", "9 mm", "-4.2 mm")
     assert said(found["Parameters", "reconstruction.truncation_m"]) == ("automatic", "12 mm", "")
 
 

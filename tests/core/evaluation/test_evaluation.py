@@ -1,5 +1,7 @@
 """Labels are read or refused with a sentence, and verdicts are summed up."""
 
+import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -90,10 +92,39 @@ def test_a_score_counts_and_names_the_margin() -> None:
     assert score(objects, {}, 0.0).accuracy is None
 
 
-def test_the_key_follows_what_decides_omega() -> None:
-    base = Parameters()
+def test_what_decides_is_counted() -> None:
+    """A bowl that keeps few candies and a lid that keeps many: the capacity share tells them apart."""
+    objects = [
+        LabelledObject("bowl", "container", Path("x")),
+        LabelledObject("lid", "non-container", Path("x")),
+    ]
+    by_omega = {
+        "bowl": ObjectVerdict("bowl", "", 100, 20, 1.0),
+        "lid": ObjectVerdict("lid", "", 100, 40, 1.0),
+    }
+    by_capacity = {
+        "bowl": replace(by_omega["bowl"], capacity_share=0.75),
+        "lid": replace(by_omega["lid"], capacity_share=0.0),
+    }
+    assert (by_omega["lid"].score, by_omega["lid"].measure) == (0.4, "Omega")
+    assert (by_capacity["lid"].score, by_capacity["lid"].measure) == (0.0, "Capacity share")
+    assert by_capacity["lid"].omega == 0.4, "it is told beside"
+    assert score(objects, by_omega, 0.125).n_right == 1
+    found = score(objects, by_capacity, 0.125)
+    assert (found.n_right, found.margin, found.largest_other) == (2, 0.75, (0.0, "lid"))
+
+
+@pytest.mark.parametrize("verdict", ["omega", "capacity"])
+def test_the_key_follows_what_decides(verdict: str) -> None:
+    base = apply_settings(Parameters(), {"containability.verdict": verdict})
     key = judging_key(base)
-    for same in ({"containability.omega_threshold": 0.3}, {"pouring.n_pour": 10}, {"evidence.films": False}):
+    for same in (
+        {"containability.omega_threshold": 0.3},
+        {"containability.capacity_threshold": 0.3},
+        {"holding.n_load": 7},
+        {"pouring.n_pour": 10},
+        {"evidence.films": False},
+    ):
         assert judging_key(apply_settings(base, same)) == key
     for other in (
         {"seed": 1},
@@ -101,6 +132,16 @@ def test_the_key_follows_what_decides_omega() -> None:
         {"containability.contact.lateral_friction": 0.3},
     ):
         assert judging_key(apply_settings(base, other)) != key
+    fillings = judging_key(apply_settings(base, {"capacity.n_fillings": 9}))
+    assert (fillings == key) == (verdict == "omega"), "what fills it decides where the filling does"
+
+
+def test_each_measure_has_verdicts_of_its_own() -> None:
+    keys = {
+        judging_key(apply_settings(Parameters(), {"containability.verdict": verdict}))
+        for verdict in ("omega", "capacity")
+    }
+    assert len(keys) == 2
 
 
 def test_a_verdict_is_read_as_it_was_saved(tmp_path: Path) -> None:
@@ -108,6 +149,13 @@ def test_a_verdict_is_read_as_it_was_saved(tmp_path: Path) -> None:
     verdict.save(tmp_path / "mug.json")
     assert ObjectVerdict.load(tmp_path / "mug.json") == verdict
     assert verdict.omega == 0.3
+    table = json.loads((tmp_path / "mug.json").read_text())
+    del table["capacity_share"]
+    (tmp_path / "mug.json").write_text(json.dumps(table))
+    assert ObjectVerdict.load(tmp_path / "mug.json") == verdict, "written before there was a capacity"
+    filled = replace(verdict, capacity_share=0.75)
+    filled.save(tmp_path / "mug.json")
+    assert ObjectVerdict.load(tmp_path / "mug.json") == filled
     (tmp_path / "mug.json").write_text("{")
     assert ObjectVerdict.load(tmp_path / "mug.json") is None
     assert mesh_mark(tmp_path / "nowhere") == "missing"

@@ -1,3 +1,5 @@
+from math import radians
+
 import numpy as np
 import pytest
 
@@ -41,10 +43,27 @@ def block() -> CollisionModel:
 
 @pytest.fixture(scope="session")
 def quick() -> Parameters:
-    """Fewer candies, two packings."""
+    """Fewer candies, and small ones, for which the dish is large; two packings."""
     return apply_settings(
         Parameters(),
-        {"containability.n_max": 80, "pouring.n_pour": 20, "pouring.n_packings": 2, "solver.substeps": 2},
+        {
+            "particle.shape": "cylinder",
+            "particle.diameter_m": 0.007,
+            "particle.height_m": 0.0028,
+            "particle.mass_kg": 0.0003,
+            "solver.substeps": 2,
+            "containability.n_max": 80,
+            "containability.rotation_rad": radians(3),
+            "containability.counted": "centre",
+            "containability.omega_threshold": 0.0,
+            "containability.contact.lateral_friction": 0.005,
+            "containability.contact.spinning_friction": 0.5,
+            "containability.contact.rolling_friction": 0.5,
+            "pouring.n_pour": 20,
+            "pouring.n_packings": 2,
+            "containability.verdict": "omega",
+            "risk.n_tries": 4,
+        },
     )
 
 

@@ -5,8 +5,9 @@ import pytest
 
 from core.errors import StageError
 from core.imagination.body import body_files
+from core.imagination.containability import object_at_rest
 from core.imagination.cup import cup_parts
-from core.imagination.imagine import imagine, object_at_rest
+from core.imagination.imagine import imagine
 from core.imagination.packing import packing_task
 from core.imagination.pours import Pour, full_task, replay_task
 from core.imagination.results import Containability, PourGrid
@@ -68,7 +69,9 @@ def test_results_do_not_depend_on_the_order(dish, quick, pool):
         target = object_at_rest(dish, files["object"], quick)
         runs = pool.run([packing_task(files["cup"], quick, k) for k in range(2)], "cup", Reporter())
         pours = [Pour(np.array([0.35, -0.17, 0.15]), angle) for angle in np.linspace(0, 5, 6)]
-        tasks = [replay_task(target, runs[k % 2], pour, quick, True) for k, pour in enumerate(pours)]
+        tasks = [
+            replay_task(target, runs[k % 2], pour.T_world_E, quick, True) for k, pour in enumerate(pours)
+        ]
         tasks += [packing_task(files["cup"], quick, 0)]
         straight = pool.run(tasks, "pours", Reporter())
         order = np.random.default_rng(3).permutation(len(tasks))
@@ -100,7 +103,11 @@ def test_replayed_pours_agree_with_cup_and_object_together(dish, quick, pool):
     with body_files(object=(dish.parts, False), cup=(cup_parts(parameters.pouring.cup), False)) as files:
         target = object_at_rest(dish, files["object"], parameters)
         runs = pool.run([packing_task(files["cup"], parameters, k) for k in packings], "cup", Reporter())
-        replayed = [replay_task(target, runs[k], pour, parameters, False) for pour in pours for k in packings]
+        replayed = [
+            replay_task(target, runs[k], pour.T_world_E, parameters, False)
+            for pour in pours
+            for k in packings
+        ]
         full = [
             full_task(target, files["cup"], k, pour, parameters, False) for pour in pours for k in packings
         ]

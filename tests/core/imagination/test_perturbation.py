@@ -56,3 +56,19 @@ def test_quaternions_agree_with_scipy():
     for rotation in Rotation.random(200, random_state=1):
         ours, theirs = quaternion_of(rotation.as_matrix()), rotation.as_quat()
         assert abs(ours @ theirs) == pytest.approx(1, abs=1e-12)
+
+
+def test_no_point_of_the_object_leaves_its_reach():
+    settings = load_preset("paper").containability.model_copy(update={"rotation_rad": 0.3})
+    perturbation = Perturbation(settings, CENTER)
+    aabb_m = CENTER + np.array([[-0.2, -0.1, -0.05], [0.25, 0.1, 0.1]])
+    corners = np.array([[x, y, z] for x in aabb_m[:, 0] for y in aabb_m[:, 1] for z in aabb_m[:, 2]])
+    low, high = perturbation.reach_m(aabb_m)
+    for time_s in np.linspace(0, perturbation.duration_s, 200):
+        moved = transform_points(perturbation.at(time_s).T_world_object, corners)
+        assert (moved >= low).all() and (moved <= high).all()
+    lowest = min(
+        transform_points(perturbation.at(t).T_world_object, corners)[:, 2].min()
+        for t in np.linspace(0, perturbation.duration_s, 200)
+    )
+    assert lowest < aabb_m[0, 2] - 0.04, "turned like this, its corners go well below where it stood"

@@ -13,7 +13,7 @@ def grid_of(counts, packings=1):
     n_in = np.repeat(np.array(counts, dtype=np.int64)[:, :, None], packings, axis=2)
     thetas = np.arange(len(counts)) * np.pi / 4
     pivots = np.zeros((len(counts), 3, 3))
-    return PourGrid(60, n_in, thetas, np.array([0.01, 0.02, 0.03]), pivots, ())
+    return PourGrid(60, n_in, 60 - n_in, thetas, np.array([0.01, 0.02, 0.03]), pivots, ())
 
 
 def test_the_footprint_has_its_principal_axes():

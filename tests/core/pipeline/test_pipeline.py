@@ -19,7 +19,8 @@ QUICK = {
     "containability.n_min": 40,
     "containability.rotation_s": 0.3,
     "pouring.n_pour": 10,
-    "pouring.n_packings": 1,
+    "containability.verdict": "omega",
+    "risk.n_tries": 4,
     "evidence.films": False,
 }
 STAGES = ("scan", "reconstruction", "collision", "containability", "pouring", "evidence")

@@ -107,3 +107,17 @@ def test_facing_makes_depth_a_distance_along_the_normal(volume):
     assert volume.distance[18, 10, 10] == pytest.approx(0.5 * 0.01 / 0.02, abs=1e-4)
     assert volume.evidence[18, 10, 10] == pytest.approx(0.5)
     assert volume.weight[18, 10, 10] == 1
+
+
+def test_a_wall_without_thickness_does_not_vanish():
+    """Each side's views say "free" where the other's say "solid": between them the wall must win."""
+    volume = TsdfVolume((0.44, -0.04, -0.04), (0.56, 0.04, 0.04), 0.002, 0.012, 0.006, 0.0024)
+    random = np.random.default_rng(0)
+    for view in range(16):
+        frame = wall(0.5)
+        noisy_m = (frame.depth_m + random.normal(0, 0.001, frame.depth_m.shape)).astype(np.float32)
+        pose = frame.T_base_camera if view % 2 else look_at([1, 0, 0], [0, 0, 0])
+        volume.integrate(replace(frame, depth_m=noisy_m, T_base_camera=pose), CAMERA, 6.0)
+    inside = volume.distance < 0
+    assert np.any(inside, axis=0).mean() > 0.99
+    assert inside.sum(axis=0).max() * 0.002 < 0.009

@@ -59,7 +59,7 @@ def pours_of(n_packings: int, n_directions: int = 8) -> PourGrid:
     pivots[..., 0] = CENTER_M[0] + np.cos(theta)[:, None] * indent
     pivots[..., 1] = CENTER_M[1] + np.sin(theta)[:, None] * indent
     recordings = tuple(tuple(no_recording(60) for _ in range(3)) for _ in range(n_directions))
-    return PourGrid(60, n_in.astype(np.int64), theta, indent, pivots, recordings)
+    return PourGrid(60, n_in.astype(np.int64), 60 - n_in.astype(np.int64), theta, indent, pivots, recordings)
 
 
 def choice_of(grid: PourGrid, i: int, j: int) -> PourChoice:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 import time
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +21,9 @@ from core.progress import Reporter
 from core.session.pour_runs import PourRun
 from hardware.cell import CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
+from hardware.errors import RobotError
 from hardware.pouring.pouring import Pouring, PourTarget
+from hardware.pouring.watching import refuse_unready
 
 BOX_SIZE_M = np.array([0.12, 0.12, 0.07])
 POURING = PouringParameters(settle_s=0.1, turn_s=1.0, wait_s=0.1)
@@ -91,6 +94,14 @@ class Rig:
         away_rad = np.abs(self.joints_rad - np.array(self.settings.robot.home_rad)).max()
         return not self.pouring.is_interrupted and bool(away_rad < 2e-3)
 
+    @property
+    def is_fit_for_the_next_test(self) -> bool:
+        """Whether the arm is home and takes moves: a failed test must not make those after it fail."""
+        with suppress(RobotError):
+            refuse_unready(self.arm.robot.state())
+            return self.is_home
+        return False
+
     def pour_in_background(self) -> PourThread:
         thread = PourThread(self.pouring)
         thread.start()
@@ -100,8 +111,7 @@ class Rig:
         """Wait until a move is under way by about a share of its time."""
         deadline_s = time.monotonic() + 60
         while time.monotonic() < deadline_s and thread.is_alive():
-            begun = self._moves_begun()
-            if name in begun:
+            if name in self._moves_begun(thread.run_before):
                 time.sleep(share * thread.duration_s(name) / self.speed_up)
                 return
             time.sleep(0.005)
@@ -113,9 +123,10 @@ class Rig:
             assert time.monotonic() - began_s < 5, "the arm does not come to rest"
         return time.monotonic() - began_s
 
-    def _moves_begun(self) -> list[str]:
+    def _moves_begun(self, run_before: Path | None) -> list[str]:
+        """Of the run under way: until it has a folder of its own, the newest one is an earlier run's."""
         folder = self.pouring.last_run
-        if folder is None:
+        if folder is None or folder == run_before:
             return []
         return [event["name"] for event in PourRun.load(folder).events if event["kind"] == "move"]
 
@@ -127,6 +138,7 @@ class PourThread(threading.Thread):
         super().__init__(daemon=True)
         self._pouring = pouring
         self.fresh = pouring.plan()
+        self.run_before = pouring.last_run
         self.error: BaseException | None = None
 
     def run(self) -> None:

@@ -50,7 +50,7 @@ def lasting(tmp_path_factory):
 def rig(lasting):
     """The lasting one; begun anew only where a failed test left it on its way."""
     yield lasting
-    if not lasting.is_home:
+    if not lasting.is_fit_for_the_next_test:
         lasting.__exit__(None, None, None)
         lasting.__enter__()
 

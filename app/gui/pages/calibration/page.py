@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from PySide6.QtGui import QUndoCommand
-from PySide6.QtWidgets import QFileDialog, QVBoxLayout
+from PySide6.QtWidgets import QFileDialog, QStackedWidget, QVBoxLayout
 from typing_extensions import override
 
 from app.calibration_board import (
@@ -19,13 +20,16 @@ from app.calibration_board import (
     save_board,
 )
 from app.gui.desk.desk import Desk
+from app.gui.pages.calibration.fit_part import FitPart
 from app.gui.pages.calibration.side import CalibrationSide
 from app.gui.pages.calibration.view import CalibrationView
-from app.gui.pages.page import Page, SplitView
-from app.gui.pages.saved_presets import save_preset
+from app.gui.pages.page import Page, SidePanel, SplitView
+from app.gui.pages.saved_presets import remember_preset, save_preset
 from app.jobs.calibration_work import CalibrationTask, CalibrationWork, VerdictReached
+from app.jobs.fit_work import FitDone, FitWork
 from app.presets import preset_file
 from core.errors import InputError, PoursightError
+from core.evaluation.fitting.provenance import write_fitted_preset
 from core.evaluation.labels import LabelledObject
 from core.parameters import Parameters, load_preset
 
@@ -43,12 +47,16 @@ class CalibrationPage(Page):
         self._board: Board | None = None
         self._draft: Draft = "default", Parameters()
         self._is_loaded = False
-        self._host = desk.jobs.make_host(CalibrationWork, "calibrates")
+        self._host = desk.jobs.make_host(FitWork, "calibrates")
         self._view = CalibrationView()
         self._side = CalibrationSide()
+        self._fit: FitPart | None = None
+        self._views, self._sides = QStackedWidget(), QStackedWidget()
+        self._views.addWidget(self._view)
+        self._sides.addWidget(self._side)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(SplitView(self._view, self._side))
+        column.addWidget(SplitView(self._views, self._sides))
         self._connect()
         self._show(None)
 
@@ -56,6 +64,7 @@ class CalibrationPage(Page):
         side, view, jobs = self._side, self._view, self.desk.jobs
         side.primary.clicked.connect(self._go_on)
         side.run_selected.clicked.connect(self._run_selected)
+        side.fit.clicked.connect(lambda: self.show_fit(True))
         side.save_wanted.connect(self._save_preset)
         side.editor.edited.connect(self._edit)
         side.editor.preset_chosen.connect(self._choose_preset)
@@ -102,10 +111,13 @@ class CalibrationPage(Page):
             hint
             or self.tr(
                 "Choose a folder of meshes with a CSV that says for each id whether it is a container. Each "
-                "object then gets its Omega, the share of candies that stay, for every set of parameters."
+                "object then gets its score for every set of parameters: how much of it is room that holds "
+                "candies, or Omega, the share of candies that stay."
             ),
         )
         self._show_draft()
+        if self._fit is not None:
+            self._fit.show_board(board, self._draft)
 
     def _save(self, board: Board) -> None:
         try:
@@ -152,11 +164,13 @@ class CalibrationPage(Page):
             name, preset = "default", Parameters()
         self._side.editor.set_parameters(parameters, name, preset)
         self._update_buttons()
+        if self._fit is not None:
+            self._fit.show_board(self._board, self._draft)
 
     def _save_preset(self, name: str) -> None:
         try:
             path = preset_file(name)
-            save_preset(path, self._draft[1])
+            self._write_preset(path)
         except PoursightError as error:
             self.desk.told.emit(str(error))
             return
@@ -164,12 +178,57 @@ class CalibrationPage(Page):
         self.use_draft((str(path), self._draft[1]))
         self.desk.told.emit(self.tr("Saved as the preset '{name}'.").format(name=path.stem))
 
+    def _write_preset(self, path: Path) -> None:
+        """Keep the draft; what was fitted says where it comes from."""
+        parameters, sets = self._draft[1], () if self._board is None else self._board.sets
+        fitted = next((one for one in sets if one.parameters == parameters and one.provenance), None)
+        if fitted is None or fitted.provenance is None:
+            save_preset(path, parameters)
+            return
+        write_fitted_preset(path, parameters, fitted.named, fitted.provenance)
+        remember_preset(path)
+
+    # Fitting
+
+    def show_fit(self, is_wanted: bool) -> None:
+        """Show what is needed to fit, or the objects again."""
+        if self._fit is None:
+            self._fit = FitPart(self.desk, self._host, self.KEY, self)
+            self._fit.side.back_wanted.connect(lambda: self.show_fit(False))
+            self._fit.found.connect(self._take_fitted)
+            self._views.addWidget(self._fit.view)
+            self._sides.addWidget(self._fit.side)
+            self._fit.show_board(self._board, self._draft)
+        for stack in (self._views, self._sides):
+            stack.setCurrentIndex(1 if is_wanted else 0)
+
+    @override
+    def press_primary(self) -> None:
+        shown = self._sides.currentWidget()
+        if isinstance(shown, SidePanel) and shown.primary.isEnabled():
+            shown.primary.click()
+
+    def _take_fitted(self, parameters: Parameters, done: FitDone | None) -> None:
+        """A fit ended: what it found is a set of its own, and the next run's."""
+        if self._board is None:
+            return
+        if done is None:
+            board, one = self._board.with_set(parameters)
+        else:
+            board, one = self._board.with_fitted_set(parameters, done.named, done.provenance)
+        self._save(board)
+        self._show(board)
+        self._push((self._draft[0], one.parameters), self.tr("fitted parameters"))
+        said = self.tr("{name} holds the fitted parameters; 'Run all' judges all objects with them.")
+        self.desk.told.emit(said.format(name=one.name))
+
     # Running
 
     def _update_buttons(self) -> None:
         board, is_idle = self._board, self.desk.jobs.is_idle
         self._view.update_buttons(is_idle)
         self._side.run_selected.setVisible(board is not None)
+        self._side.fit.setVisible(board is not None)
         self._side.run_selected.setEnabled(is_idle and bool(self._view.objects.selected_names()))
         if board is None:
             self._side.column_note.setText("")
@@ -228,7 +287,13 @@ class CalibrationPage(Page):
         self._update_buttons()
         board = self._board
         if is_ours and board is not None:
-            self.desk.background.run("calibration", partial(read_verdicts, board), self._show)
+            self.desk.background.run("calibration", partial(read_verdicts, board), self._take_verdicts)
+
+    def _take_verdicts(self, read: Board) -> None:
+        """Show the verdicts that were read; sets may have come meanwhile."""
+        board = self._board
+        if board is not None and board.source == read.source:
+            self._show(replace(board, verdicts={**board.verdicts, **read.verdicts}))
 
     # Files
 

@@ -6,18 +6,19 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QLineEdit, QPushButton
 
 from app.gui.pages.page import SidePanel
-from app.gui.pages.saved_presets import preset_names
+from app.gui.pages.saved_presets import preset_names, preset_tips
 from app.gui.theme import GRID_PX
 from app.gui.views.parameter_editor import ParameterEditor
 
-GROUPS = ("containability", "particle", "solver", "collision")
+GROUPS = ("containability", "particle", "solver", "collision", "capacity")
 
 
 class CalibrationSide(SidePanel):
     """Parameter editor, the preset's name, and the buttons that run.
 
     Attributes:
-        editor: of the parameters that decide Omega.
+        editor: of the parameters that decide the score.
+        fit: leads to fitting them.
         save_wanted: the name of a preset to be saved.
     """
 
@@ -29,10 +30,16 @@ class CalibrationSide(SidePanel):
         self.run_selected = QPushButton(self.tr("Run selected"))
         self.run_selected.setObjectName("run_selected")
         self.run_selected.setMinimumHeight(5 * GRID_PX)
+        self.fit = QPushButton(self.tr("Fit..."))
+        self.fit.setObjectName("fit")
+        self.fit.setMinimumHeight(5 * GRID_PX)
+        self.fit.setToolTip(self.tr("Let the program search for parameters that tell the labels apart"))
+        self.add_button(self.fit)
         self.add_button(self.run_selected)
         self.column_note = QLabel()
         self.column_note.setObjectName("column_note")
-        self.editor = ParameterEditor(GROUPS, preset_names())
+        self.editor = ParameterEditor(GROUPS)
+        self._offer_presets()
         self.body.addWidget(self.column_note)
         self.body.addWidget(self.editor, 1)
         self.body.addLayout(self._build_saving())
@@ -56,5 +63,9 @@ class CalibrationSide(SidePanel):
 
     def preset_saved(self) -> None:
         """A preset was saved: offer it, and forget its name."""
-        self.editor.set_preset_names(preset_names())
+        self._offer_presets()
         self._name.clear()
+
+    def _offer_presets(self) -> None:
+        names = preset_names()
+        self.editor.set_preset_names(names, preset_tips(names))

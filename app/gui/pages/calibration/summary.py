@@ -6,13 +6,14 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QWidget
 
 from app.calibration_board import Board
+from app.gui.pages.calibration.measure_words import measure_title
 from app.gui.pages.calibration.table import differences_text
 from app.gui.views.health_table import Column, FactTable, Row
 from core.parameters import Parameters
 
 
 class SummaryTable(FactTable):
-    """One row for each set: accuracy, the two objects that decide the margin, the threshold."""
+    """One row for each set: what judges, accuracy, the two objects that decide the margin, the threshold."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(_columns(), parent)
@@ -34,13 +35,14 @@ def _columns() -> list[Column]:
 
     return [
         Column(tr("Set"), align="left"),
+        Column(tr("Judged by"), tooltip=tr("What is held against the threshold"), align="left"),
         Column(tr("Right"), tooltip=tr("Objects judged as they are labelled; ambiguous ones do not count")),
         Column(
             tr("Margin"), tooltip=tr("Smallest container less largest other; negative: overlap"), decimals=3
         ),
-        Column(tr("Threshold"), tooltip=tr("Omega above which an object is a container"), decimals=3),
-        Column(tr("Smallest container"), tooltip=tr("Omega of the container that keeps least"), align="left"),
-        Column(tr("Largest other"), tooltip=tr("Omega of the non-container that keeps most"), align="left"),
+        Column(tr("Threshold"), tooltip=tr("Above it an object is a container"), decimals=3),
+        Column(tr("Smallest container"), tooltip=tr("The container with the smallest score"), align="left"),
+        Column(tr("Largest other"), tooltip=tr("The non-container with the largest score"), align="left"),
     ]
 
 
@@ -52,9 +54,14 @@ def _row(board: Board, k: int) -> Row:
     if found.n_failed:
         right += QCoreApplication.translate("SummaryTable", ", {n} failed").format(n=found.n_failed)
     tip = differences_text(one.parameters, Parameters())
+    name = one.name
+    if one.provenance is not None:
+        name = QCoreApplication.translate("SummaryTable", "{name}, fitted").format(name=name)
+        tip = f"{one.provenance.sentence}\n{tip}"
     return Row(
         (
-            one.name,
+            name,
+            measure_title(one.measure),
             right,
             found.margin,
             one.threshold,

@@ -8,14 +8,15 @@ from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QTreeWidget, QTree
 from typing_extensions import override
 
 from app.calibration_board import Board, ParameterSet
-from app.gui.pages.calibration.omega_cell import CELL_ROLE, OmegaCell, OmegaDelegate
+from app.gui.pages.calibration.measure_words import measure_meaning, measure_noun
+from app.gui.pages.calibration.score_cell import CELL_ROLE, ScoreCell, ScoreDelegate
 from app.gui.views.painting import tabular
 from core.evaluation.labels import LABELS, LabelledObject
 from core.evaluation.scores import is_right
 from core.evaluation.verdicts import ObjectVerdict
 from core.parameters import Parameters, difference
 
-_OBJECT_PX, _SET_PX, _WIDEST_SET_PX = 192, 144, 360
+_OBJECT_PX, _SET_PX, _WIDEST_SET_PX = 192, 136, 360
 
 
 class ObjectTable(QTreeWidget):
@@ -24,14 +25,14 @@ class ObjectTable(QTreeWidget):
     def __init__(self) -> None:
         super().__init__()
         self.setObjectName("objects_table")
-        self.setAccessibleName(self.tr("Objects and their Omega"))
+        self.setAccessibleName(self.tr("Objects and their scores"))
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.setAlternatingRowColors(True)
         self.setUniformRowHeights(True)
         self.setRootIsDecorated(True)
         self.setIndentation(16)
         self.setFrameShape(QTreeWidget.Shape.NoFrame)
-        self.setItemDelegate(OmegaDelegate(self))
+        self.setItemDelegate(ScoreDelegate(self))
         self.setFont(tabular(self.font()))
         self._rows: dict[str, QTreeWidgetItem] = {}
         self._objects: tuple[LabelledObject, ...] = ()
@@ -50,7 +51,7 @@ class ObjectTable(QTreeWidget):
             self._objects = objects
             self._build_rows()
         sets = () if board is None else board.sets
-        if [one.name for one in sets] != [one.name for one in self._sets] or not self._sets:
+        if _heads(sets) != _heads(self._sets) or not self._sets:
             self._build_columns(sets)
         self._sets = sets
         if board is not None:
@@ -94,7 +95,7 @@ class ObjectTable(QTreeWidget):
 
     def _build_columns(self, sets: tuple[ParameterSet, ...]) -> None:
         self.setColumnCount(1 + len(sets))
-        self.setHeaderLabels([self.tr("Object"), *(one.name for one in sets)])
+        self.setHeaderLabels([self.tr("Object"), *_heads(sets)])
         header = self.header()
         header.setStretchLastSection(False)
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
@@ -120,8 +121,9 @@ class ObjectTable(QTreeWidget):
         first = board.sets[0].parameters if board.sets else Parameters()
         for column, one in enumerate(board.sets, 1):
             text = differences_text(one.parameters, Parameters())
-            tip = self.tr("Omega: share of candies that stayed. {name} differs from the default in:\n{text}")
-            lines = [tip.format(name=one.name, text=text or self.tr("nothing"))]
+            tip = self.tr("{meaning} {name} differs from the default in:\n{text}")
+            meaning = measure_meaning(one.measure)
+            lines = [tip.format(meaning=meaning, name=one.name, text=text or self.tr("nothing"))]
             if column > 1:
                 against = differences_text(one.parameters, first) or self.tr("nothing")
                 said = self.tr("and from {name} in:\n{text}")
@@ -133,8 +135,8 @@ class ObjectTable(QTreeWidget):
         before: bool | None = None
         for column, each in enumerate(board.sets, 1):
             verdict = board.of(each).get(one.name)
-            omega = None if verdict is None else verdict.omega
-            is_open = None if omega is None else omega > each.threshold
+            score = None if verdict is None else verdict.score
+            is_open = None if score is None else score > each.threshold
             is_flipped = None not in (before, is_open) and before != is_open
             cell = self._cell(one, each, verdict, is_flipped)
             row.setData(column, CELL_ROLE, cell)
@@ -144,28 +146,43 @@ class ObjectTable(QTreeWidget):
 
     def _cell(
         self, one: LabelledObject, each: ParameterSet, verdict: ObjectVerdict | None, is_flipped: bool
-    ) -> OmegaCell:
+    ) -> ScoreCell:
         if verdict is None:
-            return OmegaCell(None, each.threshold, None)
-        if verdict.omega is None:
-            return OmegaCell(None, each.threshold, None, self.tr("failed"))
-        right = is_right(one.label, verdict.omega, each.threshold)
+            return ScoreCell(None, each.threshold, None)
+        if verdict.score is None:
+            return ScoreCell(None, each.threshold, None, self.tr("failed"))
+        right = is_right(one.label, verdict.score, each.threshold)
         word = self.tr("wrong") if right is False else ""
-        return OmegaCell(verdict.omega, each.threshold, right, word, is_flipped)
+        return ScoreCell(verdict.score, each.threshold, right, word, is_flipped)
 
     def _tip(self, verdict: ObjectVerdict | None, each: ParameterSet, is_flipped: bool) -> str:
         if verdict is None:
             return self.tr("Not judged yet.")
-        if verdict.omega is None:
+        if verdict.score is None:
             return verdict.problem
-        said = self.tr(
-            "{n_in} of {n_drop} candies stayed; the threshold is {threshold:.3g}. It took {seconds:.1f} s."
-        ).format(n_in=verdict.n_in, n_drop=verdict.n_drop, threshold=each.threshold, seconds=verdict.seconds)
+        said = self._found_words(verdict).format(
+            n_in=verdict.n_in,
+            n_drop=verdict.n_drop,
+            share=100 * verdict.score,
+            threshold=each.threshold,
+            seconds=verdict.seconds,
+        )
         flip = self.tr("The verdict flips against the set before.")
         return f"{said} {flip}" if is_flipped else said
 
-    def _words(self, cell: OmegaCell) -> str:
-        number = self.tr("not judged") if cell.omega is None else f"{cell.omega:.3f}"
+    def _found_words(self, verdict: ObjectVerdict) -> str:
+        if verdict.measure == "Omega":
+            return self.tr(
+                "{n_in} of {n_drop} candies stayed; the threshold is {threshold:.3g}. "
+                "It took {seconds:.1f} s."
+            )
+        return self.tr(
+            "What it holds fills {share:.1f} % of its convex hull; the threshold is {threshold:.3g}. Of the "
+            "{n_drop} candies dropped {n_in} stayed. It took {seconds:.1f} s."
+        )
+
+    def _words(self, cell: ScoreCell) -> str:
+        number = self.tr("not judged") if cell.score is None else f"{cell.score:.3f}"
         flip = self.tr("flips") if cell.is_flipped else ""
         return ", ".join(filter(None, (number, cell.word, flip)))
 
@@ -174,6 +191,11 @@ class ObjectTable(QTreeWidget):
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.viewport().update()
+
+
+def _heads(sets: tuple[ParameterSet, ...]) -> list[str]:
+    """Heading of each set: its name and, below, what it judges by."""
+    return [f"{one.name}\n{measure_noun(one.measure)}" for one in sets]
 
 
 def differences_text(parameters: Parameters, base: Parameters) -> str:

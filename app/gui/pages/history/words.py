@@ -41,6 +41,14 @@ def verdict_sentence(session: SessionSummary) -> str:
         return QCoreApplication.translate(
             _CONTEXT, "Whether it is an open container has not been imagined yet."
         )
+    if session.capacity_share is not None and session.capacity_threshold is not None:
+        return QCoreApplication.translate(
+            _CONTEXT, "{verdict}: it holds {share} of its convex hull; it takes more than {threshold}."
+        ).format(
+            verdict=verdict_words(session),
+            share=_percent(session.capacity_share),
+            threshold=_percent(session.capacity_threshold),
+        )
     return QCoreApplication.translate(
         _CONTEXT, "{verdict}: {omega} of the candies stayed; it takes more than {threshold}."
     ).format(

@@ -14,6 +14,8 @@ from app.gui.views.scene import PreparedMesh, prepare_mesh
 from core.errors import SessionError
 from core.files import read_json
 from core.geometry import BoolArray, FloatArray
+from core.imagination.capacity.result import Capacity
+from core.imagination.holding.result import HOLDING_FILE, Holding
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.rendering.replay import lowest_point_m, make_replay
 from core.imagination.results import Containability
@@ -59,6 +61,8 @@ class ShownDrop:
     """
 
     containability: Containability
+    capacity: Capacity | None
+    holding: Holding | None
     settings: ContainabilityParameters
     particle: ParticleParameters
     seed: int
@@ -94,7 +98,7 @@ def load(key: DropKey) -> ShownDrop | None:
     if record is None or not key.collision:
         return None
     settings, particle = _settings(record, key.folder)
-    containability = _containability(session)
+    containability, capacity, holding = _found(session)
     surface = CollisionModel.load(session.folder("collision")).surface
     ground_m = lowest_point_m(surface, containability.recording.T_world_body) - _GROUND_GAP_M
     # As balls the candies are as thick as they are wide: so thick they lie on the ground.
@@ -102,6 +106,8 @@ def load(key: DropKey) -> ShownDrop | None:
     replay = make_replay(containability.recording, containability.retained, ground_m, 2 * radius_m)
     return ShownDrop(
         containability=containability,
+        capacity=capacity,
+        holding=holding,
         settings=settings,
         particle=particle,
         seed=int(record.parameters.get("seed", 0)),
@@ -118,10 +124,15 @@ def load(key: DropKey) -> ShownDrop | None:
     )
 
 
-def _containability(session: Session) -> Containability:
+def _found(session: Session) -> tuple[Containability, Capacity | None, Holding | None]:
     folder = session.folder("containability")
     try:
-        return Containability.load(folder)
+        is_known = (folder / HOLDING_FILE).is_file()
+        return (
+            Containability.load(folder),
+            Capacity.load(folder) if is_known else None,
+            Holding.load(folder) if is_known else None,
+        )
     except (KeyError, TypeError, ValueError) as error:
         raise SessionError(f"The drop in {folder} is damaged ({error!r}); imagine it again.") from error
 

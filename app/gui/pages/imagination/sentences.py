@@ -5,13 +5,19 @@ from __future__ import annotations
 from PySide6.QtCore import QObject
 
 from core.imagination.results import Containability
+from core.report.sentences import paper_verdict_sentence
 
 
 class Sentences(QObject):
     """Says why an object is, or is not, an open container."""
 
     def reason(self, found: Containability, n_on_top: int) -> str:
-        """What had to stay, what did, and where the others are; `n_on_top` lie on the object, not in it."""
+        """What the paper's rule says; if it decides, what had to stay, what did, and where the others are.
+
+        `n_on_top` lie on the object, not in it.
+        """
+        if found.verdict is not None:
+            return paper_verdict_sentence(found)
         needed = self.tr("More than {threshold} of the candies have to stay inside;").format(
             threshold=percent(found.omega_threshold)
         )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import degrees, isfinite, isinf
+
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
@@ -17,10 +19,21 @@ from app.gui.theme import GRID_PX
 from app.gui.views.footprint import FootprintView
 from app.gui.views.labels import text_label
 from app.gui.views.omega_bar import OmegaBar
+from core.imagination.holding.words import holding_sentence
 from core.report.sentences import verdict_sentence
 
 MM = 1000.0
-GROUPS = ("seed", "collision", "particle", "solver", "containability", "pouring")
+GROUPS = (
+    "seed",
+    "collision",
+    "particle",
+    "solver",
+    "containability",
+    "capacity",
+    "holding",
+    "pouring",
+    "risk",
+)
 _LOWER_PX = 38 * GRID_PX
 """Of footprint or editor, at the least."""
 
@@ -100,7 +113,8 @@ class VerdictSide(SidePanel):
     def _count(self) -> None:
         n = n_different(self._desk.workspace, GROUPS)
         text = self.tr("Parameters")
-        self.pages.set_text("parameters", f"{text} ({self.tr('{n} differ').format(n=n)})" if n else text)
+        differing = self.tr("1 differs") if n == 1 else self.tr("{n} differ").format(n=n)
+        self.pages.set_text("parameters", f"{text} ({differing})" if n else text)
 
     def show_failure(self, sentence: str) -> None:
         """Say why the result cannot be shown; empty: it can."""
@@ -137,6 +151,29 @@ class VerdictSide(SidePanel):
         )
         self.facts.set_facts(self._facts(drop))
 
+    def _holding_facts(self, drop: ShownDrop) -> list[Fact]:
+        capacity, holding = drop.capacity, drop.holding
+        if capacity is None or holding is None:
+            return []
+        held = self.tr("{n:.0f} candies, {ml:.0f} ml").format(n=capacity.n_candies, ml=capacity.bulk_ml)
+        tilt = self._tilt(holding.first_rad, holding.tilt_rad[-1])
+        if isfinite(holding.first_rad):
+            tilt = self.tr("{deg:.0f}° (half of them to {half})").format(
+                deg=degrees(holding.holds_rad), half=self._tilt(holding.half_rad, holding.tilt_rad[-1])
+            )
+        water = self.tr(
+            "Filled from above until candies ran over, then perturbed. Water: {ml:.0f} ml."
+        ).format(ml=capacity.geometric_volume_ml)
+        return [
+            Fact(self.tr("Holds"), held, f"{water} {capacity.explanation}".strip()),
+            Fact(self.tr("Keeps all to"), tilt, holding_sentence(holding)),
+        ]
+
+    def _tilt(self, tilt_rad: float, most_rad: float) -> str:
+        if isinf(tilt_rad):
+            return self.tr("over {deg:.0f}°").format(deg=degrees(most_rad))
+        return self.tr("{deg:.0f}°").format(deg=degrees(tilt_rad))
+
     def _facts(self, drop: ShownDrop) -> list[Fact]:
         arrow = " \N{RIGHTWARDS ARROW} "
         counts = arrow.join(str(phase.n_inside) for phase in drop.phases)
@@ -144,6 +181,7 @@ class VerdictSide(SidePanel):
             n=drop.containability.n_drop, width=drop.particle.diameter_m * MM
         )
         return [
+            *self._holding_facts(drop),
             Fact(self.tr("Candies"), candies, self.tr("How many were dropped, and their diameter")),
             Fact(
                 self.tr("Still in it"),

@@ -75,6 +75,7 @@ def one_direction(grid: PourGrid, theta_rad: float) -> PourGrid | None:
     return PourGrid(
         grid.n_pour,
         grid.n_in[row],
+        grid.n_spilled[row],
         grid.theta_rad[row],
         grid.indent_m,
         grid.pivot_m[row],

@@ -13,8 +13,11 @@ from app.motion_record import current_motions
 from core.errors import SessionError
 from core.files import read_json
 from core.geometry import BoolArray
+from core.imagination.amount.result import AMOUNT_FILE, Amount
+from core.imagination.choice import choose_pour
 from core.imagination.rendering.shapes import cup_surface
 from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.risk.results import RISK_FILE, PourRisk
 from core.motion.pour.choosing import PourMotions
 from core.motion.pour.plan import PourFeasibility
 from core.parameters.imagination import ParticleParameters, PouringParameters
@@ -36,7 +39,10 @@ class ShownPours:
         digest: of the imagined pours.
         containability: the verdict before them.
         grid: none if the object is no open container.
-        choice: what the paper's rule says; none without a grid.
+        choice: what the imagination alone would choose; none without a grid.
+        risk: of the pours; none if no tries were made.
+        paper_choice: what the paper's rule says; none without a grid.
+        amount: how many candies shall go in; none if it is not known what the object holds.
         motions: which ones the cell's arm can make; none if that is not known.
         operator: what a person chose; none if nobody did.
         problem: why it is not known what a person chose; empty if it is.
@@ -52,6 +58,9 @@ class ShownPours:
     containability: Containability
     grid: PourGrid | None
     choice: PourChoice | None
+    risk: PourRisk | None
+    paper_choice: PourChoice | None
+    amount: Amount | None
     motions: PourMotions | None
     operator: OperatorChoice | None
     problem: str
@@ -106,20 +115,23 @@ def load_pours(folder: Path, cell: CellSettings | None, before: ShownPours | Non
     operator, problem = _operator(folder, record.digest)
     is_known = before is not None and (before.folder, before.digest) == (folder, record.digest)
     containability = Containability.load(session.folder("containability"))
-    table = read_json(session.folder("pouring") / "choice.json")["choice"]
+    stage = session.folder("pouring")
+    table = read_json(stage / "choice.json")["choice"]
     pouring = PouringParameters.model_validate(record.parameters["pouring"])
     surface = read_ply(session.folder(source_of(session)) / "mesh.ply")
     cup = cup_surface(pouring.cup)
-    if table is None:
-        grid = None
-    else:
-        grid = before.grid if is_known and before is not None else PourGrid.load(session.folder("pouring"))
+    grid = before.grid if is_known and before is not None else None
+    if table is not None and grid is None:
+        grid = PourGrid.load(stage)
     return ShownPours(
         folder,
         record.digest,
         containability,
         grid,
         None if table is None else PourChoice.from_table(table),
+        PourRisk.load(stage) if (stage / RISK_FILE).is_file() else None,
+        None if grid is None else choose_pour(grid, pouring.cup),
+        Amount.from_table(read_json(stage / AMOUNT_FILE)) if (stage / AMOUNT_FILE).is_file() else None,
         motions,
         operator,
         problem,

@@ -12,8 +12,16 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.desk.desk import Desk
 from app.gui.pages.pours.comparison import load_grid, scratch_session
 from app.jobs.session_work import SessionTask, SessionWork
-from core.imagination.results import PourGrid
+from core.imagination.results import PourGrid, imagined_n_pour
 from core.parameters import apply_settings
+
+_ONLY_POURS = {
+    "containability.verdict": "omega",
+    "containability.omega_threshold": 0.0,
+    "pouring.amount": "number",
+    "risk.n_tries": 0,
+}
+"""Only P is compared: that it is a container, and how much goes in, is known."""
 
 
 class VariantRun(QObject):
@@ -41,7 +49,10 @@ class VariantRun(QObject):
         self._desk.background.run("scratch", copy, lambda scratch: self._imagine(scratch, task, theta_rad))
 
     def _imagine(self, scratch: Path, task: SessionTask, theta_rad: float) -> None:
-        parameters = apply_settings(task.parameters, {"pouring.theta_fixed_rad": theta_rad})
+        parameters = apply_settings(task.parameters, _ONLY_POURS | {"pouring.theta_fixed_rad": theta_rad})
+        n_pour = imagined_n_pour(task.folder / "pouring")
+        if n_pour is not None:
+            parameters = apply_settings(parameters, {"pouring.n_pour": n_pour})
         self._desk.jobs.start(
             self.tr("Imagine pours from {deg:.0f}°").format(deg=degrees(theta_rad)),
             self._page,

@@ -7,8 +7,16 @@ from PySide6.QtCore import QCoreApplication
 
 from app.gui.pages.pours.comparison import OtherPours, best_of
 from app.gui.pages.pours.results import ShownPours
+from core.imagination.amount.words import amount_text
 from core.imagination.results import PourGrid
-from core.report import motion_sentence, operator_sentence, place_text
+from core.report import (
+    motion_sentence,
+    operator_sentence,
+    place_text,
+    risk_sentence,
+    tries_sentence,
+    verdict_sentence,
+)
 from core.report.sentences import direction_text, ratio_text
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -32,15 +40,18 @@ def chosen_sentence(pours: ShownPours) -> str:
 
 
 def why_sentences(pours: ShownPours) -> list[str]:
-    """Say why this one: a person, the arm, or the paper's rule with its numbers."""
+    """Say why this one: a person, the arm, its tries, or the paper's rule with its numbers."""
     grid = pours.grid
     if grid is None:
         return [_no_pours(pours)]
-    said = []
+    said = [] if pours.amount is None else [amount_text(pours.amount)]
     if pours.operator is not None:
         said.append(operator_sentence(pours.operator, grid, pours.program_choice))
-    elif pours.choice is not None:
-        said.append(_rule(grid, pours.choice.i, pours.choice.j))
+    elif pours.choice is not None and pours.paper_choice is not None:
+        if pours.risk is not None:
+            said.append(risk_sentence(grid, pours.risk, pours.choice, pours.paper_choice))
+        else:
+            said.append(_rule(grid, pours.paper_choice.i, pours.paper_choice.j))
     if pours.motions is not None and pours.operator is None:
         said.append(motion_sentence(pours.motions, grid))
     if pours.problem:
@@ -51,9 +62,10 @@ def why_sentences(pours: ShownPours) -> list[str]:
 def selected_sentence(pours: ShownPours, i: int, j: int) -> str:
     """Say where a pour is from, and how much of it lands inside."""
     assert pours.grid is not None, "there is a pour"
-    return QCoreApplication.translate(_CONTEXT, "{pour} of the {n} candies land inside.").format(
+    said = QCoreApplication.translate(_CONTEXT, "{pour} of the {n} candies land inside.").format(
         pour=_pour_words(pours.grid, i, j).capitalize(), n=pours.grid.n_pour
     )
+    return said if pours.risk is None else f"{said} {tries_sentence(pours.risk, i, j)}"
 
 
 def feasibility_sentence(pours: ShownPours, i: int, j: int) -> str:
@@ -164,13 +176,5 @@ def _no_pours(pours: ShownPours) -> str:
         return QCoreApplication.translate(
             _CONTEXT, "The run ended before the pours were imagined; imagine again to continue."
         )
-    return QCoreApplication.translate(
-        _CONTEXT,
-        "Pours are imagined for open containers only. Of the {n} candies dropped on this object, {kept} "
-        "stayed: {share:.1f} %, where more than {threshold:.1f} % must stay.",
-    ).format(
-        n=found.n_drop,
-        kept=found.n_in,
-        share=100 * found.omega,
-        threshold=100 * found.omega_threshold,
-    )
+    only = QCoreApplication.translate(_CONTEXT, "Pours are imagined for open containers only.")
+    return f"{only} {verdict_sentence(found)}"

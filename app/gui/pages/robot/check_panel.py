@@ -13,6 +13,9 @@ from app.gui.pages.robot.words import checks, minutes_words, plan_facts
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import say, text_label
 from app.jobs.arm_news import PlannedPour
+from core.session.cups import Cup
+
+_NO_CUP = Cup(1, 1, 0, None)
 
 
 class CheckPanel(Panel):
@@ -36,15 +39,15 @@ class CheckPanel(Panel):
         for one in (self._facts, self._note):
             self.column.addWidget(one)
         self.column.addWidget(text_label("checks_heading", "heading", self.tr("I have seen to it:")))
-        self._checks = tuple(self._check(name) for name, *_ in checks(0))
+        self._checks = tuple(self._check(name) for name, *_ in checks(_NO_CUP))
         for one in (self._rehearsal, self._expiry, self._reason):
             self.column.addWidget(one)
 
-    def show_plan(self, planned: PlannedPour, n_candies: int, *, is_rehearsal: bool) -> None:
+    def show_plan(self, planned: PlannedPour, cup: Cup, *, is_rehearsal: bool) -> None:
         """Show a plan; of another one nothing is ticked yet, unless it is a rehearsal."""
         say(self._note, planned.note)
         self._facts.set_facts(plan_facts(planned.plan))
-        for check, (_, words, tip) in zip(self._checks, checks(n_candies), strict=True):
+        for check, (_, words, tip) in zip(self._checks, checks(cup), strict=True):
             check.setText(words)
             check.setAccessibleName(words)
             check.setToolTip(tip)

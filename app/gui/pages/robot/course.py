@@ -17,6 +17,10 @@ from app.jobs.arm_news import MoveProgress, PlannedBackOff, PlannedPour
 from app.jobs.arm_work import ArmWork
 from app.jobs.messages import Failed, FailureKind
 from app.jobs.session_work import SessionTask, SessionWork
+from core.errors import SessionError
+from core.imagination.amount.result import imagined_cups
+from core.session.cups import Cup, cup_of_run, next_cup
+from core.session.pour_runs import note_emptied
 
 if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
@@ -92,11 +96,17 @@ class Course(QObject):
         return None if self.planned is None and self.way is None else self._motion
 
     @property
-    def n_candies(self) -> int:
-        """How many of them a pour begins with."""
-        task = self._task
-        parameters = task.parameters if task is not None else self._desk.workspace.parameters
-        return parameters.pouring.n_pour
+    def cup(self) -> Cup:
+        """Which cup is asked about, or comes next, and how many candies its imagination reckoned with."""
+        workspace = self._desk.workspace
+        session, n_pour = workspace.session, workspace.parameters.pouring.n_pour
+        if session is None:
+            return Cup(1, 1, n_pour, None)
+        cups = imagined_cups(session.path / "pouring") or (n_pour,)
+        if self.run is not None:
+            return cup_of_run(session.path, self.run, cups)
+        record = session.record("pouring")
+        return next_cup(session.path, "" if record is None else record.digest, cups)
 
     @property
     def step(self) -> Step:
@@ -209,6 +219,17 @@ class Course(QObject):
     def ask_outcome(self, run: Path | None) -> None:
         """Ask for a run's outcome; none: for none any more."""
         self.run = run
+        self.changed.emit()
+
+    def begin_with_first_cup(self) -> None:
+        """Keep that the object was emptied, so that the first cup comes next."""
+        session = self._desk.workspace.session
+        if session is None:
+            return
+        try:
+            note_emptied(session.path)
+        except SessionError as error:
+            self.failure = str(error)
         self.changed.emit()
 
     def drop_plan(self) -> None:

@@ -79,11 +79,12 @@ class Guide(QObject):
             side.start.show_connect(self._desk.cell.settings, arm.farewell, course.failure)
         elif step is Step.PLAN:
             is_closed = self._is_gripper_closed
-            side.start.show_plan(is_closed, course.has_backed_off, course.failure or course.stopped)
+            failure = course.failure or course.stopped
+            side.start.show_plan(is_closed, course.has_backed_off, failure, course.cup)
             if is_closed:
                 side.state.unfold()
         elif step is Step.CHECK and course.planned is not None:
-            side.check.show_plan(course.planned, course.n_candies, is_rehearsal=self._desk.cell.is_simulated)
+            side.check.show_plan(course.planned, course.cup, is_rehearsal=self._desk.cell.is_simulated)
         elif step.is_recovery and status is not None:
             side.recovery.show_step(step, self._what_happened(step), status.must_back_off, course.failure)
         elif step is Step.OUTCOME and course.run is not None:
@@ -123,7 +124,7 @@ class Guide(QObject):
         if self._asked != (folder, run):
             self._asked = folder, run
             known = run.outcome.n_candies if run is not None and run.outcome is not None else None
-            outcome.show_run(run, known or self._course.n_candies, self._course.failure)
+            outcome.show_run(run, known or self._course.cup.n_candies, self._course.failure)
 
     def _primary_text(self, step: Step) -> str:
         texts = {

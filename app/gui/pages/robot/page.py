@@ -64,6 +64,7 @@ class RobotPage(Page):
         course.run_ended.connect(lambda _: self._load_standing())
         side.primary.clicked.connect(self._do_primary)
         side.again.clicked.connect(self._do_again)
+        side.start.emptied.connect(course.begin_with_first_cup)
         side.hold_to_pour.confirmed.connect(course.pour)
         side.hold_to_back_off.confirmed.connect(course.back_off)
         side.check.ticked.connect(self._guide.look)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QCoreApplication
 
 from app.gui.pages.fact_grid import Fact
 from app.jobs.arm_news import ArmStatus, MoveProgress
+from core.session.cups import Cup
 
 if TYPE_CHECKING:
     from core.motion.pour.plan import PourPlan
@@ -161,12 +162,16 @@ def progress_words(progress: MoveProgress, n_moves: int) -> str:
     )
 
 
-def checks(n_candies: int) -> list[tuple[str, str, str]]:
+def checks(cup: Cup) -> list[tuple[str, str, str]]:
     """Return what somebody has to see to before the arm moves, as (name, words, more words)."""
+    if cup.n_cups == 1:
+        said = translate("RobotWords", "Cup at its station, {n} candies in it")
+    else:
+        said = translate("RobotWords", "Cup {k} of {cups} at its station, {n} candies in it")
     return [
         (
             "cup",
-            translate("RobotWords", "Cup at its station, {n} candies in it").format(n=n_candies),
+            said.format(n=cup.n_candies, k=cup.number, cups=cup.n_cups),
             translate("RobotWords", "As many candies as were imagined, and the cup upright on its mark"),
         ),
         (

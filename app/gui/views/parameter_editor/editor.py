@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QEvent, QSignalBlocker, QSize, Qt, Signal
@@ -98,8 +98,9 @@ class ParameterEditor(QWidget):
         """How many of the parameters shown differ from the preset."""
         return self._model.n_different()
 
-    def set_preset_names(self, names: Sequence[str]) -> None:
-        """Offer these presets; a name that is a file is shown by its stem."""
+    def set_preset_names(self, names: Sequence[str], tips: Mapping[str, str] | None = None) -> None:
+        """Offer these presets; a name that is a file is shown by its stem, and told of by its tip if any."""
+        self._tips = dict(tips or {})
         current = self._presets.currentData()
         with QSignalBlocker(self._presets):
             self._presets.clear()
@@ -110,7 +111,9 @@ class ParameterEditor(QWidget):
     def _add_preset(self, name: str) -> None:
         is_file = name.endswith(".json")
         self._presets.addItem(Path(name).stem if is_file else name, name)
-        self._presets.setItemData(self._presets.count() - 1, name, Qt.ItemDataRole.ToolTipRole)
+        self._presets.setItemData(
+            self._presets.count() - 1, self._tips.get(name, name), Qt.ItemDataRole.ToolTipRole
+        )
 
     def set_parameters(self, parameters: Parameters, preset_name: str, preset: Parameters) -> None:
         """Show parameters against a preset, without a signal; refused values are forgotten."""

@@ -16,7 +16,7 @@ def _words(workspace):
 
 def test_a_session_brings_its_parameters_and_stands_fresh(desk, mug_session):
     desk.workspace.open(mug_session)
-    assert desk.workspace.parameters.pouring.n_packings == 1
+    assert desk.workspace.parameters.containability.n_max == 150
     assert _words(desk.workspace) == {
         "scan": "fresh",
         "reconstruction": "fresh",
@@ -67,4 +67,4 @@ def test_a_preset_file_that_has_gone_leaves_the_defaults_to_compare_with(desk, m
     path.write_text(path.read_text().replace('"default"', '"/nowhere/mine.json"'))
     desk.workspace.open(mug_session)
     assert desk.workspace.preset_name == "default"
-    assert desk.workspace.parameters.pouring.n_packings == 1
+    assert desk.workspace.parameters.containability.n_max == 150

@@ -70,6 +70,8 @@ def story() -> Story:
     thetas, indents = np.arange(8) * np.pi / 4, np.array([0.01, 0.02, 0.03])
     n_in = np.full((8, 3, 1), N_CANDIES - LOST)
     pivots = np.tile(middle, (8, 3, 1))
-    grid = PourGrid(N_CANDIES, n_in, thetas, indents, pivots, tuple(tuple([pour] * 3) for _ in range(8)))
+    grid = PourGrid(
+        N_CANDIES, n_in, N_CANDIES - n_in, thetas, indents, pivots, tuple(tuple([pour] * 3) for _ in range(8))
+    )
     choice = PourChoice(2, 1, float(thetas[2]), middle, T_world_cup)
     return Story(surface, cup_surface(parameters.pouring.cup), parameters, containability, grid, choice)

@@ -39,6 +39,17 @@ def test_sizes_scatter_as_told() -> None:
     assert (fill_cup(CUP, OutcomeSettings(size_spread=0)).scales == 1).all()
 
 
+def test_a_pours_candies_are_larger_or_smaller_all_alike() -> None:
+    batches = [
+        fill_cup(CUP, OutcomeSettings(seed=seed, n_candies=50, size_spread=0, batch_spread=0.2)).scales
+        for seed in range(20)
+    ]
+    assert all(np.ptp(scales) == 0 for scales in batches)
+    sizes = [scales[0] for scales in batches]
+    assert 0.8 <= min(sizes) < 0.9
+    assert 1.1 < max(sizes) <= 1.2
+
+
 def test_hull_and_skin_together_have_the_candys_size() -> None:
     settings = OutcomeSettings(candy_diameter_m=0.02, candy_height_m=0.008)
     reach = hull_m(settings, 1.1).max(axis=0) + skin_m(settings, 1.1)

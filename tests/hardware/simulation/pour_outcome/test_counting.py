@@ -10,7 +10,7 @@ from tests.hardware.simulation.pour_outcome.paths import CUP, UPRIGHT_RAD, turne
 
 
 def counted(mesh: TriangleMesh, *point_m: float, margin_m: float = 0.015) -> bool:
-    return bool(in_object(mesh, np.array([point_m]), 0.0, margin_m)[0])
+    return bool(in_object(mesh, np.array([point_m]), 0.0, margin_m, 0.0066)[0])
 
 
 @pytest.mark.parametrize(
@@ -31,6 +31,20 @@ def test_in_the_bowl_is_what_it_carries(point_m: tuple[float, float, float], is_
 
 def test_a_ring_holds_nothing() -> None:
     assert not counted(builtin_object("ring"), 0.001, 0.002, 0.0035)
+
+
+def test_a_crack_narrower_than_a_candy_spills_nothing() -> None:
+    def floor_with_gap(gap_m: float) -> TriangleMesh:
+        left, right = [[-0.05, -gap_m / 2], [gap_m / 2, 0.05]]
+        corners = [
+            (x, y, 0.002) for a, b in (left, right) for x, y in ((a, -0.05), (b, -0.05), (b, 0.05), (a, 0.05))
+        ]
+        wall = [(-0.05, -0.05, 0.0), (-0.05, 0.05, 0.0), (-0.05, 0.0, 0.04)]
+        faces = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7], [8, 9, 10]])
+        return TriangleMesh(np.array([*corners, *wall]), faces)
+
+    assert counted(floor_with_gap(0.006), 0.0, 0.001, 0.006)
+    assert not counted(floor_with_gap(0.02), 0.0, 0.001, 0.006)
 
 
 def test_heaps_count_up_to_the_margin() -> None:

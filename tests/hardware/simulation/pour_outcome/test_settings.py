@@ -22,6 +22,7 @@ ALTERED = {
     "candy_height_m": 0.0065,
     "candy_mass_kg": 0.002,
     "size_spread": 0.05,
+    "batch_spread": 0.2,
     "candy_friction": 0.6,
     "cup_friction": 0.1,
     "object_friction": 0.1,
@@ -93,9 +94,6 @@ def test_the_table_is_not_the_imagination() -> None:
     table, imagined = OutcomeSettings(), Parameters()
     contact = imagined.pouring.contact
     pairs = [
-        (table.candy_diameter_m, imagined.particle.diameter_m),
-        (table.candy_height_m, imagined.particle.height_m),
-        (table.candy_mass_kg, imagined.particle.mass_kg),
         (table.candy_shape, imagined.particle.shape),
         (table.candy_friction, contact.lateral_friction),
         (table.cup_friction, contact.lateral_friction),

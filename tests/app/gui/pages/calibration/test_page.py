@@ -8,15 +8,20 @@ from PySide6.QtWidgets import QLabel, QLineEdit, QPushButton
 from app import presets
 from app.calibration_board import Board, csv_text, last_source, load_board
 from app.gui.pages import saved_presets
-from app.gui.pages.calibration.omega_cell import CELL_ROLE
 from app.gui.pages.calibration.page import CalibrationPage
+from app.gui.pages.calibration.score_cell import CELL_ROLE
 from core.errors import InputError
 from core.evaluation.verdicts import ObjectVerdict, mesh_mark
 from core.parameters import Parameters, apply_settings, load_preset
 from core.ply import write_ply
 from hardware.simulation.objects import builtin_object
 
-QUICK = {"containability.n_max": 64, "containability.n_min": 20, "solver.substeps": 4}
+QUICK = {
+    "containability.verdict": "omega",
+    "containability.n_max": 64,
+    "containability.n_min": 20,
+    "solver.substeps": 4,
+}
 ROWS = "id,label,category\nmug,container,mug\nbottle,ambiguous,\nblock,non-container,\nlost,container,\n"
 
 
@@ -62,12 +67,18 @@ def cell(page, name, column):
     return page._view.objects._rows[name].data(column, CELL_ROLE)
 
 
-def judged(folder, omegas, **settings):
-    """A board with made verdicts: `{name: n_in of 100}`."""
-    board, one = load_board(folder).with_set(apply_settings(Parameters(), settings))
+def judged(folder, omegas, shares=None, **settings):
+    """A board with made verdicts: `{name: n_in of 100}`, with capacity shares by these."""
+    settings = {"containability.verdict": "omega" if shares is None else "capacity"} | settings
+    return with_verdicts(load_board(folder), apply_settings(Parameters(), settings), omegas, shares or {})
+
+
+def with_verdicts(board, parameters, omegas, shares):
+    board, one = board.with_set(parameters)
     for each in board.objects:
         if each.name in omegas:
-            verdict = ObjectVerdict(each.name, mesh_mark(each.mesh), 100, omegas[each.name], 1.0)
+            facts = each.name, mesh_mark(each.mesh), 100, omegas[each.name], 1.0
+            verdict = ObjectVerdict(*facts, capacity_share=shares.get(each.name))
             board = board.with_verdict(one.key, verdict)
     return board
 
@@ -91,13 +102,13 @@ def test_all_are_run_and_kept_for_the_next_start(desk, qtbot, folder):
     assert "a run makes Set A" in page.findChild(QLabel, "column_note").text()
     run(page, qtbot)
     assert cell(page, "mug", 1).is_right is True
-    assert cell(page, "block", 1).omega == 0
+    assert cell(page, "block", 1).score == 0
     assert cell(page, "bottle", 1).is_right is None
     assert cell(page, "lost", 1).word == "failed"
     assert "lost.obj" in page._view.objects._rows["lost"].toolTip(1)
     found = page._board.score(page._board.sets[0])
     assert (found.n_right, found.n_judged, found.n_failed) == (2, 2, 1)
-    assert page._view.sets.rows[0].values[1] == "2 / 2, 100.0 %, 1 failed"
+    assert page._view.sets.rows[0].values[2] == "2 / 2, 100.0 %, 1 failed"
     assert "1 of 4 objects to judge" in page.findChild(QLabel, "column_note").text()
 
     page._edit(apply_settings(page._draft[1], {"containability.omega_threshold": 0.99}))
@@ -105,7 +116,7 @@ def test_all_are_run_and_kept_for_the_next_start(desk, qtbot, folder):
     page._view.objects._rows["mug"].setSelected(True)
     run(page, qtbot, "run_selected")
     assert [one.name for one in page._board.sets] == ["Set A", "Set B"]
-    assert cell(page, "block", 2).omega == 0, "the threshold decides no Omega: what was judged holds"
+    assert cell(page, "block", 2).score == 0, "the threshold decides no score: what was judged holds"
     assert cell(page, "mug", 2).is_right is False and cell(page, "mug", 2).is_flipped
 
     again = shown(desk, qtbot)
@@ -156,6 +167,48 @@ def test_the_table_is_exported(desk, qtbot, folder, tmp_path):
     }
     assert [row["Set A right"] for row in rows] == ["1", "", "0", ""]
     assert csv_text(Board(folder, page._board.objects)).splitlines()[0] == "id,label,category"
+
+
+def both(folder):
+    """Set A by capacity, set B by Omega: the block keeps many candies but holds little."""
+    omegas = {"mug": 50, "block": 60}
+    by_omega = apply_settings(Parameters(), {"containability.verdict": "omega"})
+    return with_verdicts(judged(folder, omegas, {"mug": 0.625, "block": 0.03125}), by_omega, omegas, {})
+
+
+def test_both_kinds_of_sets_are_kept_apart(desk, qtbot, folder):
+    page = shown(desk, qtbot, folder)
+    page._show(both(folder))
+    heads = [page._view.objects.headerItem().text(column) for column in (1, 2)]
+    assert heads == ["Set A\ncapacity share", "Set B\nOmega"]
+    filled, dropped = cell(page, "block", 1), cell(page, "block", 2)
+    assert (filled.score, filled.threshold, filled.is_right) == (0.03125, 0.1, True)
+    assert (dropped.score, dropped.threshold, dropped.is_right) == (0.6, 0.13, False)
+    assert dropped.is_flipped
+    block = page._view.objects._rows["block"]
+    assert "fills 3.1 % of its convex hull" in block.toolTip(1)
+    assert "60 of 100 candies stayed; the threshold is 0.13" in block.toolTip(2)
+    by_capacity, by_omega = page._view.sets.rows
+    assert by_capacity.values[1:3] == ("Capacity share", "2 / 2, 100.0 %")
+    assert by_capacity.values[3:5] == (0.59375, 0.1)
+    assert by_omega.values[1:3] == ("Omega", "1 / 2, 50.0 %")
+    page._edit(apply_settings(page._board.sets[1].parameters, {"containability.verdict": "capacity"}))
+    assert "As Set A" in page.findChild(QLabel, "column_note").text()
+
+
+def test_by_capacity_both_scores_are_exported(folder):
+    rows = list(csv.DictReader(csv_text(both(folder)).splitlines()))
+    assert list(rows[0])[3:] == [
+        "Set A omega",
+        "Set A capacity share",
+        "Set A right",
+        "Set B omega",
+        "Set B right",
+    ]
+    block = next(row for row in rows if row["id"] == "block")
+    assert list(block.values())[3:] == ["0.6", "0.03125", "1", "0.6", "0"]
+    lost = next(row for row in rows if row["id"] == "lost")
+    assert list(lost.values())[3:] == [""] * 5
 
 
 @pytest.mark.parametrize("name", ["", "  ", "Paper", "default"])

@@ -39,7 +39,7 @@ def test_sessions_are_shown_the_newest_first(library, make_page):
     assert names(page) == ["block", "mug"]
     assert said(page, "count") == "2 sessions"
     assert said(page, "session_name") == "block"  # selected: a side panel is never empty
-    assert said(page, "session_verdict").startswith("Not a container: 0 %")
+    assert said(page, "session_verdict").startswith("Not a container: it holds 0 %")
     page.select(library / "mug")
     assert said(page, "session_verdict").startswith("Open container")
     assert said(page, "fact_chosen").endswith("chosen by the program")

@@ -13,6 +13,7 @@ def reason(n_in, n_drop, threshold, n_on_top=0):
         omega=omega,
         omega_threshold=threshold,
         is_open_container=omega > threshold,
+        verdict=None,
     )
     return Sentences().reason(found, n_on_top).replace("\u00a0", " ")
 

@@ -12,10 +12,11 @@ from types import SimpleNamespace
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QCheckBox, QLabel
+from PySide6.QtWidgets import QCheckBox, QLabel, QPushButton
 
 from app.gui.pages.robot.check_panel import CheckPanel
 from app.gui.pages.robot.steps import Step
+from core.session.cups import Cup
 from core.session.pour_runs import pour_runs
 from hardware.cell.cell_file import CELL_FOLDER
 from hardware.simulation.ur_controller.addresses import CONTROL_PORT
@@ -29,7 +30,7 @@ CHECKS = ("check_cup", "check_area", "check_speed", "check_stop")
 def reach(page, qtbot):
     """Waits until a step is reached and nothing is under way."""
 
-    def reach_(step, timeout=40_000):
+    def reach_(step, timeout=120_000):
         def is_there():
             is_idle = page.desk.jobs.is_idle and page.desk.background.is_idle
             course = page.course
@@ -86,13 +87,31 @@ def test_with_a_real_arm_nothing_is_ticked_before_somebody_does(qtbot):
     planned = SimpleNamespace(number=1, note="", plan=None, expires_s=time.monotonic() + 60)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("app.gui.pages.robot.check_panel.plan_facts", lambda _: [])
-        panel.show_plan(planned, 60, is_rehearsal=False)
+        panel.show_plan(planned, Cup(1, 1, 60, None), is_rehearsal=False)
     boxes = [panel.findChild(QCheckBox, name) for name in CHECKS]
     assert not any(box.isChecked() for box in boxes)
     assert "Tick each point" in panel.reason(planned)
     for box in boxes:
         box.setChecked(True)
     assert panel.reason(planned) == ""
+
+
+def test_of_several_cups_the_next_is_named_and_an_emptied_object_begins_with_the_first(ready, monkeypatch):
+    panel, button = ready.side.start, ready.findChild(QPushButton, "object_emptied")
+    assert not button.isVisibleTo(panel)
+    session = ready.desk.workspace.session
+    run = session.path / "pours" / "0001"
+    run.mkdir(parents=True)
+    events = [{"kind": "confirmed", "imagination": session.record("pouring").digest}, {"kind": "done"}]
+    (run / "events.jsonl").write_text("".join(json.dumps(event) + "\n" for event in events))
+    monkeypatch.setattr("app.gui.pages.robot.course.imagined_cups", lambda _: (30, 30))
+    ready.course.changed.emit()
+    assert "Next comes cup 2 of 2, 30 candies in it" in text(ready, "start_text")
+    assert button.isVisibleTo(panel)
+    button.click()
+    assert "Next comes" not in text(ready, "start_text")
+    assert not button.isVisibleTo(panel)
+    assert pour_runs(session.path)[0].was_emptied
 
 
 def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):

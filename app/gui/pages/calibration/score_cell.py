@@ -1,4 +1,4 @@
-"""How one Omega is painted in the table: the number, a word where to look, a bar with the threshold."""
+"""How one score is painted in the table: the number, a word where to look, a bar with the threshold."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ _BAR_PX = 5
 
 
 @dataclass(frozen=True)
-class OmegaCell:
+class ScoreCell:
     """What a cell tells.
 
     Attributes:
-        omega: none if the object was not judged, or could not be.
-        threshold: Omega_thr.
+        score: capacity share or Omega; none if the object was not judged, or could not be.
+        threshold: above which the object is a container.
         is_right: whether it agrees with the label; none if there is no telling.
         word: what is said beside the bar, such as "wrong"; may be empty.
         is_flipped: whether the verdict differs from the column before.
     """
 
-    omega: float | None
+    score: float | None
     threshold: float
     is_right: bool | None
     word: str = ""
     is_flipped: bool = False
 
 
-class OmegaDelegate(QStyledItemDelegate):
-    """Paints the cells that hold an `OmegaCell`; the others as usual."""
+class ScoreDelegate(QStyledItemDelegate):
+    """Paints the cells that hold an `ScoreCell`; the others as usual."""
 
     def __init__(self, view: QWidget) -> None:
         super().__init__(view)
@@ -55,7 +55,7 @@ class OmegaDelegate(QStyledItemDelegate):
     ) -> None:
         super().paint(painter, option, index)
         cell = index.data(CELL_ROLE)
-        if not isinstance(cell, OmegaCell):
+        if not isinstance(cell, ScoreCell):
             return
         rect: QRect = option.rect
         painter.save()
@@ -70,13 +70,13 @@ class OmegaDelegate(QStyledItemDelegate):
         painter.restore()
 
 
-def _paint(painter: QPainter, box: QRectF, cell: OmegaCell, font: QFont, theme: Theme) -> None:
+def _paint(painter: QPainter, box: QRectF, cell: ScoreCell, font: QFont, theme: Theme) -> None:
     """The number and what to say of it, above the bar."""
     middle = Qt.AlignmentFlag.AlignVCenter
     line = box.adjusted(0, 2, 0, -_BAR_PX - 6)
     painter.setFont(tabular(font, bold=cell.is_right is False))
-    painter.setPen(theme.color("text" if cell.omega is not None else "muted"))
-    painter.drawText(line, middle, "--" if cell.omega is None else f"{cell.omega:.3f}")
+    painter.setPen(theme.color("text" if cell.score is not None else "muted"))
+    painter.drawText(line, middle, "--" if cell.score is None else f"{cell.score:.3f}")
     painter.setFont(smaller(font))
     word_px = QFontMetricsF(painter.font()).horizontalAdvance(cell.word)
     flip = QRectF(line.right() - _MARK_PX, line.top(), _MARK_PX, line.height())
@@ -90,9 +90,9 @@ def _paint(painter: QPainter, box: QRectF, cell: OmegaCell, font: QFont, theme: 
         )
     if cell.is_flipped:
         _paint_flip(painter, flip, theme)
-    if cell.omega is not None:
+    if cell.score is not None:
         bar = QRectF(box.left(), box.bottom() - _BAR_PX - 5, box.width(), _BAR_PX)
-        _paint_bar(painter, bar, cell.omega, cell.threshold, theme)
+        _paint_bar(painter, bar, cell.score, cell.threshold, theme)
 
 
 def _paint_flip(painter: QPainter, box: QRectF, theme: Theme) -> None:
@@ -105,12 +105,12 @@ def _paint_flip(painter: QPainter, box: QRectF, theme: Theme) -> None:
         painter.drawLine(tip, tip + QPointF(-3 * side, up * 0.9))
 
 
-def _paint_bar(painter: QPainter, bar: QRectF, omega: float, threshold: float, theme: Theme) -> None:
+def _paint_bar(painter: QPainter, bar: QRectF, score: float, threshold: float, theme: Theme) -> None:
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(theme.color("raised"))
     painter.drawRoundedRect(bar, 2, 2)
     filled = QRectF(bar)
-    filled.setWidth(bar.width() * min(max(omega, 0.0), 1.0))
+    filled.setWidth(bar.width() * min(max(score, 0.0), 1.0))
     painter.setBrush(theme.color("accent"))
     painter.drawRoundedRect(filled, 2, 2)
     x = bar.left() + bar.width() * min(max(threshold, 0.0), 1.0)

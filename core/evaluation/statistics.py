@@ -1,0 +1,258 @@
+"""Figures of trials: accuracy, AUC, success of the pours, margins, times (Sec. IV-B, V)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from core.evaluation.evaluation import EvaluatedObject
+from core.evaluation.intervals import Interval, Share, auc_interval
+from core.evaluation.trials import Measure, Trial, measure_of
+
+
+@dataclass(frozen=True)
+class Confusion:
+    """Labelled trials by what they are and what they were judged; ambiguous objects are in none."""
+
+    true_positive: int
+    false_positive: int
+    true_negative: int
+    false_negative: int
+    failed: int
+
+    @property
+    def accuracy(self) -> Share:
+        """Share judged right; what failed is not right."""
+        n = self.true_positive + self.false_positive + self.true_negative + self.false_negative + self.failed
+        return Share(self.true_positive + self.true_negative, n)
+
+
+@dataclass(frozen=True)
+class Margin:
+    """How far apart containers and others are.
+
+    Attributes:
+        smallest_container: (score, name) of the container with the smallest; none without one.
+        largest_other: (score, name) of the non-container with the largest; none without one.
+        threshold: of the score.
+        measure: what the score is.
+    """
+
+    smallest_container: tuple[float, str] | None
+    largest_other: tuple[float, str] | None
+    threshold: float
+    measure: Measure
+
+    @property
+    def value(self) -> float | None:
+        """How far the containers' score stays above the others'; negative where they overlap."""
+        if self.smallest_container is None or self.largest_other is None:
+            return None
+        return self.smallest_container[0] - self.largest_other[0]
+
+
+@dataclass(frozen=True)
+class StageTime:
+    """Seconds that a stage took for an object, over the trials that have it."""
+
+    n: int
+    mean_s: float
+    median_s: float
+    max_s: float
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What the tables tell of some trials of one variant; ambiguous objects are in no figure.
+
+    Attributes:
+        trials: of labelled objects.
+        n_pours: pours for each object that is judged a container.
+        measure: what they were judged by.
+    """
+
+    trials: tuple[Trial, ...]
+    n_pours: int
+    measure: Measure
+
+    @classmethod
+    def of(cls, trials: Iterable[Trial], n_pours: int) -> Figures:
+        """Leave out the ambiguous ones."""
+        known = tuple(trials)
+        labelled = tuple(trial for trial in known if trial.label != "ambiguous")
+        return cls(labelled, n_pours, measure_of(known))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The objects."""
+        return tuple(dict.fromkeys(trial.name for trial in self.trials))
+
+    @property
+    def seeds(self) -> tuple[int, ...]:
+        """The seeds, in ascending order."""
+        return tuple(sorted({trial.seed for trial in self.trials}))
+
+    def of_seed(self, seed: int) -> Figures:
+        """Return the figures of one seed."""
+        return replace(self, trials=tuple(trial for trial in self.trials if trial.seed == seed))
+
+    @property
+    def confusion(self) -> Confusion:
+        """Trials by label and judgement."""
+        judged = [trial for trial in self.trials if trial.score is not None]
+        cells = Counter((trial.label, trial.is_judged_container) for trial in judged)
+        return Confusion(
+            cells["container", True],
+            cells["non-container", True],
+            cells["non-container", False],
+            cells["container", False],
+            len(self.trials) - len(judged),
+        )
+
+    @property
+    def accuracy(self) -> Share:
+        """Trials that were judged right."""
+        return self.confusion.accuracy
+
+    @property
+    def right_objects(self) -> Share:
+        """Objects that were judged right with every seed."""
+        wrong = {trial.name for trial in self.trials if not trial.is_right}
+        return Share(len(self.names) - len(wrong), len(self.names))
+
+    @cached_property
+    def auc(self) -> float | None:
+        """Area under the ROC curve, of the score, ties half; none without both labels."""
+        containers, others = self._scores
+        if not containers or not others:
+            return None
+        from scipy.stats import rankdata
+
+        ranks = rankdata(containers + others)[: len(containers)]
+        n = len(containers)
+        return float((ranks.sum() - n * (n + 1) / 2) / (n * len(others)))
+
+    @property
+    def auc_interval(self) -> Interval | None:
+        """95 % interval of the AUC."""
+        containers, others = self._scores
+        return None if self.auc is None else auc_interval(self.auc, len(containers), len(others))
+
+    @property
+    def pours(self) -> Share:
+        """Pours without a spilled candy; a container that was not poured into failed in all of its pours."""
+        counted = [_clean(trial, self.n_pours) for trial in self._container_trials]
+        return Share(sum(one.count for one in counted), sum(one.n for one in counted))
+
+    @property
+    def clean_objects(self) -> Share:
+        """Containers of which no pour, with no seed, spilled a candy."""
+        counted = [(trial.name, _clean(trial, self.n_pours)) for trial in self._container_trials]
+        names = {name for name, clean in counted if clean.n}
+        spilled = {name for name, clean in counted if clean.count < clean.n}
+        return Share(len(names - spilled), len(names))
+
+    @property
+    def stray_pours(self) -> tuple[Trial, ...]:
+        """Trials in which something that is no container was poured into."""
+        return tuple(trial for trial in self.trials if trial.label == "non-container" and trial.n_pours)
+
+    @property
+    def margin(self) -> Margin:
+        """The margin over all trials, with the threshold of the first that was judged."""
+        judged = [(trial.score, trial) for trial in self.trials if trial.score is not None]
+        known = [one for _, one in judged] or self.trials
+        return Margin(
+            min(((score, one.name) for score, one in judged if one.label == "container"), default=None),
+            max(((score, one.name) for score, one in judged if one.label != "container"), default=None),
+            known[0].threshold if known else 0.0,
+            self.measure,
+        )
+
+    @property
+    def roc(self) -> tuple[tuple[float, float], ...]:
+        """The ROC curve: (share of others, share of containers) above every threshold, from (0, 0) on."""
+        containers, others = self._scores
+        if not containers or not others:
+            return ()
+        steps = sorted({*containers, *others}, reverse=True)
+        return ((0.0, 0.0), *((_at_least(others, step), _at_least(containers, step)) for step in steps))
+
+    @cached_property
+    def _scores(self) -> tuple[list[float], list[float]]:
+        """The score of the containers, and of the others."""
+        judged = [(trial.score, trial.label) for trial in self.trials if trial.score is not None]
+        return (
+            [score for score, label in judged if label == "container"],
+            [score for score, label in judged if label != "container"],
+        )
+
+    @property
+    def _container_trials(self) -> tuple[Trial, ...]:
+        return tuple(trial for trial in self.trials if trial.label == "container")
+
+
+def sets_of(objects: Sequence[EvaluatedObject]) -> dict[str, frozenset[str]]:
+    """Return the sets that get figures of their own, by name: all, restricted, calibration and other.
+
+    The other objects are those to which no parameter was fitted. A set that would be empty is not there, and
+    without calibration objects neither are the others, which would be all.
+    """
+    calibration = frozenset(one.name for one in objects if one.is_calibration)
+    names = frozenset(one.name for one in objects)
+    sets = {
+        "all": names,
+        "restricted": frozenset(one.name for one in objects if one.is_restricted),
+        "calibration": calibration,
+        "other": names - calibration if calibration else frozenset(),
+    }
+    return {name: members for name, members in sets.items() if members or name == "all"}
+
+
+def stage_times(trials: Iterable[Trial]) -> dict[str, StageTime]:
+    """Return seconds by stage, in the order in which the stages come."""
+    import numpy as np
+
+    seconds: dict[str, list[float]] = {}
+    for trial in trials:
+        for stage, took_s in trial.seconds.items():
+            seconds.setdefault(stage, []).append(took_s)
+    return {
+        stage: StageTime(len(took), float(np.mean(took)), float(np.median(took)), max(took))
+        for stage, took in seconds.items()
+    }
+
+
+@dataclass(frozen=True)
+class AgreementOfPeople:
+    """How far the people who were asked agreed (Sec. IV-B).
+
+    Attributes:
+        mean_share: share of an object's people who agree with the majority, averaged over the objects.
+        n_objects: how many objects had so many of so many people with the majority; the most agreed first.
+    """
+
+    mean_share: float
+    n_objects: Mapping[tuple[int, int], int]
+
+
+def agreement_of(objects: Iterable[EvaluatedObject]) -> AgreementOfPeople | None:
+    """Sum up the agreement; none where only labels are known."""
+    majorities = [
+        (max(one.n_container, one.n_asked - one.n_container), one.n_asked) for one in objects if one.n_asked
+    ]
+    if not majorities:
+        return None
+    shares = [agreed / asked for agreed, asked in majorities]
+    counts = Counter(sorted(majorities, key=lambda pair: (-pair[0] / pair[1], -pair[1])))
+    return AgreementOfPeople(sum(shares) / len(shares), dict(counts))
+
+
+def _clean(trial: Trial, n_pours: int) -> Share:
+    return Share(trial.n_clean_pours, trial.n_pours or n_pours)
+
+
+def _at_least(values: Sequence[float], threshold: float) -> float:
+    return sum(value >= threshold for value in values) / len(values)

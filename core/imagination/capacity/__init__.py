@@ -1,0 +1,1 @@
+"""How much fits: imagined filling, and the geometric volume beside it."""

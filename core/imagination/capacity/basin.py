@@ -1,0 +1,66 @@
+"""Where an object at rest holds water, and anything as thick as a candy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.geometry import FloatArray
+from core.imagination.capacity.packing import Surroundings
+
+ML = 1e6
+"""Millilitres in a cubic metre."""
+
+
+@dataclass(frozen=True)
+class Basin:
+    """Where an object at rest holds something, heights in the frame of its mesh.
+
+    Water is a liquid. Candies are what a sphere as thick as a candy reaches and cannot leave without being
+    lifted: a notch or crack narrower than that counts as closed, and a hollow narrower than that as filled.
+
+    Attributes:
+        water_ml: volume of the water that stays, in all hollows that hold one candy at least.
+        water_level_m: height at which the largest hollow runs over; NaN without water.
+        rim_m: height at which the largest hollow for candies runs over; NaN without one.
+        heights_m: (K,) rising; the first is the floor of the hollows for candies.
+        volumes_ml: (K,) volume of these hollows below each height, up to their rims; empty without one.
+        around: what candies lie against when these hollows are full.
+        mouth_m: width of the narrowest place that most candies must pass.
+        narrow_ml: part of `water_ml` that lies where no candy goes.
+        rim_map_m: (X, Y) height of the rim of the hollow for candies there, minus infinity where none is.
+        map_origin_m: (2,) of its first point.
+        map_pitch_m: of its points.
+    """
+
+    water_ml: float
+    water_level_m: float
+    rim_m: float
+    heights_m: FloatArray
+    volumes_ml: FloatArray
+    around: Surroundings
+    mouth_m: float
+    narrow_ml: float
+    rim_map_m: FloatArray
+    map_origin_m: FloatArray
+    map_pitch_m: float
+
+    @property
+    def candies_ml(self) -> float:
+        """Volume of the hollows for candies up to their rims."""
+        return float(self.volumes_ml[-1]) if len(self.volumes_ml) else 0.0
+
+    def rim_at(self, places_m: FloatArray) -> FloatArray:
+        """Return (n,) heights of the rims at (n, 2) places; minus infinity where nothing is held, or NaN."""
+        last = np.array(self.rim_map_m.shape) - 1
+        found = np.rint((np.nan_to_num(places_m) - self.map_origin_m) / self.map_pitch_m).clip(0, last)
+        i, j = found.astype(np.int64).T
+        rims: FloatArray = self.rim_map_m[i, j]
+        return rims
+
+    def level_m(self, volume_ml: float) -> float:
+        """Height above the inner floor to which a volume fills the hollows for candies; NaN without one."""
+        if not len(self.volumes_ml):
+            return float("nan")
+        return float(np.interp(volume_ml, self.volumes_ml, self.heights_m) - self.heights_m[0])

@@ -1,0 +1,108 @@
+"""What the imagined filling finds: frozen, and able to save and load itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from core.files import read_arrays, read_json, write_arrays, write_json
+from core.geometry import FloatArray
+from core.imagination.recording import Recording
+
+_TABLE, _ARRAYS = "capacity.json", "capacity.npz"
+
+
+@dataclass(frozen=True)
+class Capacity:
+    """How much an object at rest holds.
+
+    Attributes:
+        n_candies: candies that stay when it was filled until they ran over and then perturbed (Sec. III-A).
+        spread: standard deviation of `n_candies` between the fillings; zero with one.
+        volume_ml: filled level: the bulk volume of those that lie below the rim, so what they take up with
+            the gaps between them, and the volume of water that would stand as high. Number times a candy's
+            volume over the share that candies fill in bulk, which is lower near walls (`packing.py`).
+        heaped_ml: the same of those above the rim, in a heap or where nothing is closed all around.
+        geometric_volume_ml: water that stays in all hollows of the surface: none runs over or out of a gap.
+        candy_hollow_ml: the same for what is as thick as a candy and cannot pass narrower gaps.
+        candy_scale: cube root of the volume of what was poured in the imagination over a candy's; 1: candies.
+        n_poured: particles poured in each filling, of `candy_scale`.
+        n_full: of these inside before the perturbations.
+        n_kept: of these inside at the end.
+        rim_height_m: from the inner floor to where candies run over; zero without a hollow.
+        fill_height_m: from the inner floor to the level of `volume_ml`; zero without a hollow.
+        explanation: why `volume_ml` and `geometric_volume_ml` differ; empty where they agree.
+        heights_m: (K,) above the inner floor, rising from zero; empty without a hollow.
+        volumes_ml: (K,) volume below each height.
+        candies_per_ml: in bulk, in this object.
+        recording: the first filling, to look at; None if nothing was poured.
+    """
+
+    n_candies: float
+    spread: float
+    volume_ml: float
+    heaped_ml: float
+    geometric_volume_ml: float
+    candy_hollow_ml: float
+    candy_scale: float
+    n_poured: tuple[int, ...]
+    n_full: tuple[float, ...]
+    n_kept: tuple[float, ...]
+    rim_height_m: float
+    fill_height_m: float
+    explanation: str
+    heights_m: FloatArray
+    volumes_ml: FloatArray
+    candies_per_ml: float
+    recording: Recording | None
+
+    @property
+    def n_level(self) -> float:
+        """Of `n_candies`, those below the rim: what fits without a heap."""
+        return self.volume_ml * self.candies_per_ml
+
+    @property
+    def bulk_ml(self) -> float:
+        """Bulk volume of all that stay, the heap included."""
+        return self.volume_ml + self.heaped_ml
+
+    def level_of(self, n_candies: float) -> float:
+        """Return the height above the inner floor (m) that a number of candies reaches; never above the rim.
+
+        Monotone; from the curve of height and volume of the surface. Zero without a hollow.
+        """
+        if not len(self.heights_m):
+            return 0.0
+        return float(np.interp(n_candies / self.candies_per_ml, self.volumes_ml, self.heights_m))
+
+    def share_of(self, n_candies: float) -> float:
+        """Return which share of the height from inner floor to rim a number of candies fills, 0 to 1."""
+        return self.level_of(n_candies) / self.rim_height_m if self.rim_height_m > 0 else 0.0
+
+    def to_table(self) -> dict[str, Any]:
+        """Return plain JSON: all but the curve and the recording."""
+        in_arrays = {"heights_m", "volumes_ml", "recording"}
+        return {one.name: getattr(self, one.name) for one in fields(self) if one.name not in in_arrays}
+
+    def save(self, folder: Path) -> None:
+        """Write `capacity.json` and `capacity.npz` into an existing folder."""
+        write_json(folder / _TABLE, self.to_table())
+        recorded = {} if self.recording is None else self.recording.to_arrays()
+        write_arrays(folder / _ARRAYS, heights_m=self.heights_m, volumes_ml=self.volumes_ml, **recorded)
+
+    @classmethod
+    def load(cls, folder: Path) -> Capacity:
+        """Read what `save` wrote.
+
+        Raises:
+            SessionError: a file is missing or damaged.
+        """
+        table, arrays = read_json(folder / _TABLE), read_arrays(folder / _ARRAYS)
+        for name in ("n_poured", "n_full", "n_kept"):
+            table[name] = tuple(table[name])
+        table["heights_m"], table["volumes_ml"] = arrays["heights_m"], arrays["volumes_ml"]
+        table["recording"] = Recording.from_arrays(arrays) if "time_s" in arrays else None
+        return cls(**table)

@@ -1,0 +1,78 @@
+"""What is poured in place of candies where these would be too many: larger balls, and what they stand for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+from core.parameters import Parameters
+from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
+
+_BALL_SUBSTEPS = 2
+"""A ball is seen by a wall until its centre is through it, which is long after a hull is lost."""
+_LEAST_RATE_HZ = 120
+
+
+@dataclass(frozen=True)
+class StandIn:
+    """Particles that stand for candies.
+
+    Attributes:
+        scale: cube root of a particle's volume over a candy's; 1 for the candy itself.
+        particle: its shape.
+        contact: its contacts.
+        solver: how finely it is computed.
+    """
+
+    scale: float
+    particle: ParticleParameters
+    contact: ContactParameters
+    solver: SolverParameters
+
+
+def particle_volume_m3(particle: ParticleParameters) -> float:
+    """Volume of one particle."""
+    if particle.shape == "sphere":
+        return pi / 6 * particle.diameter_m**3
+    flat = particle.diameter_m**2 * particle.height_m
+    return pi / 4 * flat if particle.shape == "cylinder" else pi / 6 * flat
+
+
+def ball_diameter_m(particle: ParticleParameters) -> float:
+    """Diameter of the ball with a particle's volume."""
+    return float((6 / pi * particle_volume_m3(particle)) ** (1 / 3))
+
+
+def candy_itself(parameters: Parameters) -> StandIn:
+    """Return the candy."""
+    return StandIn(1.0, parameters.particle, parameters.containability.contact, parameters.solver)
+
+
+def ball_of(parameters: Parameters, scale: float) -> StandIn:
+    """Return a ball of `scale` cubed times the volume of a candy.
+
+    A ball costs a fifth of an ellipsoid, for spheres meet a surface in closed form. The resistance to rolling
+    and spinning has the dimension of a length in Bullet, so it grows with the size; to fall its own size a
+    larger ball takes longer by the root of the scale, so the steps do too.
+    """
+    candy, contact = parameters.particle, parameters.containability.contact
+    ball = candy.model_copy(
+        update={
+            "shape": "sphere",
+            "diameter_m": scale * ball_diameter_m(candy),
+            "mass_kg": scale**3 * candy.mass_kg,
+        }
+    )
+    slowed = contact.model_copy(
+        update={
+            "rolling_friction": scale * contact.rolling_friction,
+            "spinning_friction": scale * contact.spinning_friction,
+        }
+    )
+    solver = parameters.solver.model_copy(
+        update={
+            "rate_hz": max(round(parameters.solver.rate_hz / sqrt(scale)), _LEAST_RATE_HZ),
+            "substeps": min(parameters.solver.substeps, _BALL_SUBSTEPS),
+        }
+    )
+    return StandIn(scale, ball, slowed, solver)

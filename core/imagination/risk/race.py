@@ -1,0 +1,56 @@
+"""Where the next tries are spent: always on the pour that promises most, until one is sure or all are spent.
+
+A pour that spills falls behind and is given up; one that stays clean is tried until its lower bound is
+reached. Most objects need the tries of one pour, and a difficult one gets all there are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.imagination.results import PourGrid
+from core.imagination.risk.results import PourRisk, joined
+from core.parameters.risk import RiskParameters
+
+ROUND = 4
+"""Tries at a time: a fixed number, so that the result does not depend on the number of workers."""
+
+
+class Race:
+    """The state of the tries of all pours; knows no physics.
+
+    Attributes:
+        tried: [i][j] spilled candies of each try so far.
+    """
+
+    def __init__(self, grid: PourGrid, order: Sequence[tuple[int, int]], settings: RiskParameters) -> None:
+        """Begin with the imagined pours; `order` breaks ties, the first is preferred."""
+        self._n_pour = grid.n_pour
+        self._settings = settings
+        self._order = {pour: rank for rank, pour in enumerate(order)}
+        self._spent = 0
+        self.tried: list[list[list[int]]] = grid.n_spilled.tolist()
+
+    @property
+    def risk(self) -> PourRisk:
+        """What is known by now."""
+        return PourRisk(self._n_pour, joined(self.tried))
+
+    def next_round(self) -> tuple[tuple[int, int], range] | None:
+        """Return the pour to try next and the numbers of its tries; none if the race is over."""
+        risk = self.risk
+        i, j = self._most_promising(risk)
+        n_tries = min(ROUND, self._settings.n_tries - self._spent)
+        if n_tries <= 0 or risk.clean_at_least[i, j] >= self._settings.sure:
+            return None
+        done = len(self.tried[i][j])
+        return (i, j), range(done, done + n_tries)
+
+    def record(self, pour: tuple[int, int], spilled: Sequence[int]) -> None:
+        """Take the tries of the last round."""
+        self.tried[pour[0]][pour[1]] += list(spilled)
+        self._spent += len(spilled)
+
+    def _most_promising(self, risk: PourRisk) -> tuple[int, int]:
+        expected, mean = risk.expected_clean, risk.mean_spilled
+        return min(self._order, key=lambda pour: (-expected[pour], mean[pour], self._order[pour]))

@@ -1,0 +1,42 @@
+"""Whether an object is an open container, by what it holds: a verdict that a person can check."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What an object holds, held against its own size (docs/decisions/0015).
+
+    Attributes:
+        capacity_share: bulk volume of the candies that stay in it, filled until it ran over and then
+            perturbed, as a share of the volume of its convex hull: how much of it is room that holds.
+        threshold: `capacity_share` above which it is an open container.
+        n_candies: the same in candies.
+        volume_ml: the same in ml.
+        n_load: candies it was tilted with.
+        holds_rad: tilt up to which none of them left, in the worst direction.
+    """
+
+    capacity_share: float
+    threshold: float
+    n_candies: float
+    volume_ml: float
+    n_load: int
+    holds_rad: float
+
+    @property
+    def is_container(self) -> bool:
+        """Whether what it holds makes it an open container."""
+        return self.capacity_share > self.threshold
+
+    def to_table(self) -> dict[str, Any]:
+        """Return plain JSON."""
+        return asdict(self)
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any]) -> Verdict:
+        """Read what `to_table` gave."""
+        return cls(**table)

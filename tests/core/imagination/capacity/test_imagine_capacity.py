@@ -1,0 +1,79 @@
+"""Fillings of a dish of 90 x 50 x 35 mm inside, 157 ml."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from core.collision import CollisionModel
+from core.imagination.body import body_files
+from core.imagination.capacity.imagine import imagine_capacity
+from core.imagination.capacity.result import Capacity
+from core.imagination.containability import object_at_rest
+from core.imagination.imagine import imagine_containability
+from core.progress import Reporter
+from core.workers import RunHere
+
+
+def fill(model, candies, few, runner) -> Capacity:
+    found = imagine_containability(model, candies)
+    with body_files(object=(model.parts, not model.is_convex)) as files:
+        target = object_at_rest(model, files["object"], candies)
+        return imagine_capacity(model.surface, target, found, candies, few, runner, Reporter())
+
+
+@pytest.fixture(scope="module")
+def exact_dish(dish) -> CollisionModel:
+    """The dish as a surface: Bullet lays a skin around convex parts, which takes a tenth of its inside."""
+    return CollisionModel("exact", (dish.surface,), dish.surface)
+
+
+@pytest.fixture(scope="module")
+def filled(exact_dish, candies, few) -> Capacity:
+    return fill(exact_dish, candies, few, RunHere())
+
+
+def test_a_dish_holds_its_inside(filled):
+    assert filled.geometric_volume_ml == pytest.approx(157.5, rel=0.03)
+    assert filled.volume_ml == pytest.approx(157.5, rel=0.15)
+    # An M&M takes up about a millilitre in bulk.
+    assert 0.8 * filled.volume_ml < filled.n_candies < 1.1 * filled.volume_ml
+    assert filled.rim_height_m == pytest.approx(0.035, abs=0.0015)
+    assert filled.candy_scale > 1.2
+    assert filled.explanation == ""
+    assert filled.n_level == pytest.approx(filled.n_candies - filled.heaped_ml * filled.candies_per_ml)
+
+
+def test_levels(filled):
+    levels = [filled.level_of(n) for n in range(0, 300, 10)]
+    assert levels[0] == 0
+    assert (np.diff(levels) >= 0).all()
+    assert levels[-1] == pytest.approx(filled.rim_height_m)
+    half = filled.candies_per_ml * 157.5 / 2
+    assert filled.share_of(half) == pytest.approx(0.5, abs=0.03)
+
+
+def test_the_same_in_one_process_and_in_two(filled, exact_dish, candies, few, pool):
+    again = fill(exact_dish, candies, few, pool)
+    for field in fields(Capacity):
+        if field.name != "recording":
+            assert np.array_equal(getattr(again, field.name), getattr(filled, field.name)), field.name
+    assert np.array_equal(again.recording.positions_m, filled.recording.positions_m, equal_nan=True)
+
+
+def test_saved_and_loaded(filled, tmp_path):
+    filled.save(tmp_path)
+    loaded = Capacity.load(tmp_path)
+    for field in fields(Capacity):
+        if field.name != "recording":
+            assert np.array_equal(getattr(loaded, field.name), getattr(filled, field.name)), field.name
+    assert loaded.recording.positions_m.shape == filled.recording.positions_m.shape
+
+
+def test_nothing_is_poured_where_no_candy_stayed(block, candies, few, tmp_path):
+    capacity = fill(block, candies, few, RunHere())
+    assert (capacity.n_candies, capacity.volume_ml, capacity.geometric_volume_ml) == (0, 0, 0)
+    assert capacity.n_poured == ()
+    assert capacity.level_of(10) == 0
+    capacity.save(tmp_path)
+    assert Capacity.load(tmp_path).recording is None

@@ -1,0 +1,37 @@
+from math import pi
+
+import pytest
+
+from core.imagination.capacity.packing import NOWHERE, Surroundings, bulk_ml, packing_fraction
+from core.imagination.capacity.rain import runs_over
+from core.imagination.capacity.stand_in import ball_of, candy_itself, particle_volume_m3
+
+
+def test_a_ball_has_the_volume_and_mass_of_the_candies_it_stands_for(candies):
+    ball = ball_of(candies, 2.0)
+    assert particle_volume_m3(ball.particle) == pytest.approx(8 * pi / 6 * 0.0132**2 * 0.007)
+    assert ball.particle.mass_kg == pytest.approx(8 * 0.0009)
+    assert ball.contact.lateral_friction == 0.2
+    assert ball.contact.rolling_friction == pytest.approx(0.04)
+    assert ball.solver.rate_hz == 170
+
+
+def test_bulk_is_less_dense_near_walls(candies):
+    candy, ball = candies.particle, ball_of(candies, 2.0).particle
+    narrow = Surroundings(volume_m3=1e-4, floor_m2=2e-3, side_m2=8e-3)
+    for particle in (candy, ball):
+        assert 0.5 < packing_fraction(particle, narrow) < packing_fraction(particle, NOWHERE) < 0.65
+    assert bulk_ml(candy, narrow) == pytest.approx(0.6386 / packing_fraction(candy, narrow), rel=1e-3)
+
+
+def test_candies_stand_for_themselves(candies):
+    assert candy_itself(candies).scale == 1
+    assert candy_itself(candies).particle == candies.particle
+
+
+def test_it_runs_over_when_the_last_candies_do_not_add_up():
+    assert not runs_over([(10, 10)], 8)
+    assert not runs_over([(10, 10), (20, 15)], 8)
+    assert runs_over([(10, 10), (20, 13)], 8)
+    # Too few since then to tell.
+    assert not runs_over([(10, 10), (14, 10)], 8)
