@@ -22,8 +22,8 @@ START_S = 30.0
 """A process starts in half a second, and in ten on a machine with too much to do."""
 CONNECT_S = 10.0
 """Connecting takes half a second, and 5 s until ur_rtde gives up starting its program."""
-LOST_S = 0.4
-"""A state that is older is lost: the worker is frozen, or the link is. A busy machine stays below."""
+LOST_S = 0.37
+"""A state that is older, and still so after `_LOOK_S`, is lost: the worker is frozen, or the link is."""
 _LOOK_S = 0.03
 _ANSWER_S = 2.0
 _END_S = 1.0
@@ -90,8 +90,12 @@ class WorkerLink:
         Raises:
             RobotLost: it is too old.
         """
-        raw = self._mailbox.read()
-        if raw is None or self._is_ending.is_set() or time.monotonic() - raw["time_s"] > LOST_S:
+        raw = self._fresh_state()
+        if raw is None:
+            # Where the whole machine stood still, the worker gets to run again, too, and tells the newest.
+            self._is_ending.wait(_LOOK_S)
+            raw = self._fresh_state()
+        if raw is None:
             raise self._lost("sends nothing")
         return raw
 
@@ -121,6 +125,12 @@ class WorkerLink:
             self._process.join(_END_S)
         self._thread.join()
         self._kill()
+
+    def _fresh_state(self) -> AnyArray | None:
+        raw = self._mailbox.read()
+        if raw is None or self._is_ending.is_set() or time.monotonic() - raw["time_s"] > LOST_S:
+            return None
+        return raw
 
     def _send(self, request: Request, within_s: float) -> None:
         if not self._send_lock.acquire(timeout=within_s):

@@ -57,6 +57,10 @@ class Registers:
         """How long ago the command register was written, by the wall clock: clients live by that one."""
         return time.monotonic() - self._command_written_s
 
+    def leave_out(self, missed_s: float) -> None:
+        """Do not count time in which the whole machine stood still: nobody could write."""
+        self._command_written_s += missed_s
+
     def int_input(self, index: int) -> int:
         """Return an integer input."""
         return int(self._inputs.get(f"input_int_register_{index}", 0))

@@ -28,9 +28,9 @@ from hardware.simulation.ur_controller.rtde_server import RtdeLink
 from hardware.simulation.ur_controller.script_server import ScriptLink
 
 _ADDRESS_TRIES = 50
-_LARGEST_LAG_S = 1.0
 _LATE_S = 0.02
-"""Beyond this much wall time, as after a suspended machine, what was missed is left out."""
+_STOOD_STILL_S = 0.1
+"""Beyond this much wall time the machine itself stood still: that is left out, for the watchdog, too."""
 
 
 @dataclass(frozen=True)
@@ -149,8 +149,10 @@ class ControllerServer:
         begin_s, done = loop.time(), 0
         while True:
             due = int((loop.time() - begin_s) / period_s) - done
-            if due * period_s > _LARGEST_LAG_S:
-                begin_s += due * period_s - _LARGEST_LAG_S
+            missed_s = due * period_s - _STOOD_STILL_S
+            if missed_s > 0:
+                begin_s += missed_s
+                self._controller.registers.leave_out(missed_s)
                 continue
             if due * period_s > _LATE_S:  # what came meanwhile is read first: the watchdog must not be wrong
                 await asyncio.sleep(0)

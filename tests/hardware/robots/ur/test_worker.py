@@ -18,6 +18,8 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.robots.ur.bench import HOME, STANDS_WITHIN_S, Bench, driver, wait_until
 
 NOTICED_WITHIN_S = 0.5
+STANDS_STILL_S = 0.6
+"""Longer than the controller's watchdog and the driver wait for a word."""
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 
 
@@ -51,6 +53,19 @@ def test_the_watchdog_alone_makes_the_arm_stand(bench: Bench, number: int) -> No
     # Without new targets the arm comes to rest at the last one, which may be before the watchdog has starved.
     wait_until(lambda: "watchdog starved" in bench.controller.command("log"), STANDS_WITHIN_S)
     bench.works_again()
+
+
+@pytest.mark.parametrize("kind", ["move_joints", "follow"])
+def test_a_machine_that_stood_still_is_no_fault(bench: Bench, kind: str) -> None:
+    move = bench.begin(kind)
+    controllers = [
+        child.pid for child in psutil.Process().children() if "ur_controller" in " ".join(child.cmdline())
+    ]
+    everything = " ".join(map(str, [*controllers, worker_of(bench), os.getpid()]))
+    command = f"kill -STOP {everything}; sleep {STANDS_STILL_S}; kill -CONT {everything}"
+    subprocess.run(["sh", "-c", command], check=True)
+    move.wait(10)
+    assert "watchdog starved" not in bench.controller.command("log")
 
 
 def test_a_standing_arm_whose_worker_froze_says_so(bench: Bench) -> None:
