@@ -14,7 +14,7 @@ from hardware.cell import Arm
 from hardware.errors import DeviceError, RobotError, TrackingLost
 from hardware.interfaces import Move, RobotState
 from hardware.pouring.run_log import RunLog
-from hardware.pouring.watching import refuse_deviation, refuse_unready
+from hardware.pouring.watching import MAX_AGE_S, refuse_deviation, refuse_unready
 
 STAGE = "pour"
 SAME_PLACE_RAD = 2e-3
@@ -103,6 +103,10 @@ class PourProcedure:
 
     def _ready_state(self) -> RobotState:
         state = self._arm.robot.state()
+        if (
+            state.age_s > MAX_AGE_S
+        ):  # the machine stood still since it was taken, and the arm may have told more
+            state = self._arm.robot.state()
         refuse_unready(state)
         return state
 

@@ -149,10 +149,9 @@ class ControllerServer:
         begin_s, done = loop.time(), 0
         while True:
             due = int((loop.time() - begin_s) / period_s) - done
-            missed_s = due * period_s - _STOOD_STILL_S
-            if missed_s > 0:
-                begin_s += missed_s
-                self._controller.registers.leave_out(missed_s)
+            if due * period_s > _STOOD_STILL_S:
+                begin_s += due * period_s
+                self._controller.registers.leave_out(due * period_s)
                 continue
             if due * period_s > _LATE_S:  # what came meanwhile is read first: the watchdog must not be wrong
                 await asyncio.sleep(0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import socket
 import threading
 import time
@@ -26,7 +27,8 @@ from hardware.robots.ur.probe import DASHBOARD_PORT, DATA_PORT, SCRIPT_PORT
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.robots.ur.bench import HOME, Bench, driver
 
-EMPTY_ADDRESS = "127.83.11.7"
+EMPTY_ADDRESS = f"127.83.{os.getpid() % 256}.7"
+"""Each test process its own: what one listens on must be empty for the other."""
 
 
 @pytest.fixture
