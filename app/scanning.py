@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from core.mesh import TriangleMesh
     from core.pipeline.pipeline import Pipeline
     from hardware.cell import Cell, CellSettings
-    from hardware.scanning import ScanControl, ScanKeeper
+    from hardware.scanning.control import ScanControl
+    from hardware.scanning.keeping import ScanKeeper
     from hardware.scanning.procedure import ViewsPlanned, ViewTaken
 
 IN_PROGRESS = "scan-in-progress"
@@ -77,7 +78,7 @@ def scan_object(
     Raises:
         PoursightError: the sentence says what is in the way; every view that was taken is kept.
     """
-    from hardware.scanning import ScanKeeper
+    from hardware.scanning.keeping import ScanKeeper
 
     is_replay = settings.camera.kind == "replay"
     if is_replay and (wishes.adaptive or wishes.retake):
@@ -109,8 +110,8 @@ def _take(
     wishes: ScanWishes,
     watch: ScanWatch | None,
 ) -> None:
-    from hardware.scanning import ScanProcedure
     from hardware.scanning.looking_again import look_again
+    from hardware.scanning.procedure import ScanProcedure
     from hardware.scanning.views import name_views
 
     with (

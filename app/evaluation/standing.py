@@ -14,7 +14,7 @@ from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters
 from core.progress import Reporter
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from hardware.cell.settings import CellSettings, PlaceSettings
 from hardware.scanning.simulated import simulate_scan, simulated_cell
 from hardware.simulation.placing import WALL_MARGIN_M, place_on_platform, transform_mesh

@@ -22,7 +22,7 @@ def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
         PoursightError: the scan cannot be read.
     """
     from core.progress import Reporter
-    from core.quality import coarse_volume, find_hidden_cavity
+    from core.quality.cavity import coarse_volume, find_hidden_cavity
     from core.scan import read_scan
     from hardware.scanning.looking_again import propose
 

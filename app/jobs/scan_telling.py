@@ -18,10 +18,10 @@ from core.motion.kinematics import flange_pose
 
 if TYPE_CHECKING:
     from core.geometry import FloatArray
-    from core.reconstruction import TsdfVolume
+    from core.reconstruction.tsdf import TsdfVolume
     from core.scan.model import RgbdFrame
     from hardware.cell import Cell, CellSettings
-    from hardware.scanning import ViewRecord
+    from hardware.scanning.views import ViewRecord
 
 _STATUS_S = 0.1
 _MESH_S = 0.3

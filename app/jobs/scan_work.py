@@ -23,7 +23,7 @@ from core.workers import WorkerPool
 if TYPE_CHECKING:
     from hardware.cell import Cell, CellSettings
     from hardware.interfaces import Robot
-    from hardware.scanning import ScanControl
+    from hardware.scanning.control import ScanControl
 
 _CLOSING_S = 1.5
 
@@ -144,7 +144,7 @@ class ScanWork(Service):
 
     @contextmanager
     def _under_way(self, face: JobFace) -> Iterator[_Running]:
-        from hardware.scanning import ScanControl
+        from hardware.scanning.control import ScanControl
 
         self._is_idle.clear()
         self._running = running = _Running(face, ScanControl())

@@ -7,8 +7,11 @@ from pathlib import Path
 from core.collision import CollisionModel, build_collision_model
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import CollisionParameters, ReconstructionParameters
-from core.quality import ScanQuality, assess, coarse_volume
-from core.reconstruction import Reconstruction, reconstruct
+from core.quality.cavity import coarse_volume
+from core.quality.measures import ScanQuality
+from core.quality.verdict import assess
+from core.reconstruction.result import Reconstruction
+from core.reconstruction.stage import reconstruct
 from core.scan import crop_box_of, read_scan
 from core.workers import WorkerReporter
 

@@ -30,8 +30,8 @@ from core.pipeline.needs import source_of, stage_needs
 from core.pipeline.report_content import gather
 from core.ply import read_ply, write_ply
 from core.progress import Reporter
-from core.quality import ScanQuality
-from core.reconstruction import Reconstruction
+from core.quality.measures import ScanQuality
+from core.reconstruction.result import Reconstruction
 from core.report import write_report
 from core.scan import Scan, read_scan, write_scan
 from core.session import Session

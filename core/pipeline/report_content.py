@@ -11,8 +11,8 @@ from core.mesh import TriangleMesh
 from core.motion.pour.choosing import PourMotions
 from core.parameters import Parameters
 from core.pipeline.needs import STAGES
-from core.quality import ScanQuality
-from core.reconstruction import Reconstruction
+from core.quality.measures import ScanQuality
+from core.reconstruction.result import Reconstruction
 from core.report import Media, ReportContent
 from core.session import Session
 from core.session.operator_choice import read_operator_choice

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import binary_dilation, generate_binary_structure, label
 
-from core.geometry import BoolArray, FloatArray, IntArray
+from core.geometry import BoolArray
+from core.quality.hidden_cavity import HiddenCavity
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
 
@@ -26,28 +27,6 @@ RIM_LAYERS = 4
 ALL_NEIGHBOURS = generate_binary_structure(3, 3)
 IN_LAYER = generate_binary_structure(3, 1) & np.array([False, True, False])
 """The four neighbours within a horizontal layer; the last axis is z."""
-
-
-@dataclass(frozen=True)
-class HiddenCavity:
-    """What no view saw inside the openings; all empty and zero when everything was seen.
-
-    Attributes:
-        frontier_m: (N, 3) voxel centres in the base frame, where known free space ends at the unseen.
-        region: (M, 3) voxels of the volume, the frontier and the unseen that lies enclosed behind it. It
-            includes the cores of walls and floors, which no view can see.
-        area_m2: of the frontier.
-        volume_ml: of the region, so the most that may be hidden.
-        depth_m: from the rim down to the middle of the frontier, in the opening with the most of it.
-        width_m: of that opening just below its rim, as the diameter of a circle of its area.
-    """
-
-    frontier_m: FloatArray
-    region: IntArray
-    area_m2: float = 0.0
-    volume_ml: float = 0.0
-    depth_m: float = 0.0
-    width_m: float = 0.0
 
 
 @dataclass(frozen=True)

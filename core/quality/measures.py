@@ -10,7 +10,7 @@ import numpy as np
 from core.errors import SessionError
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import IntArray
-from core.quality.cavity import HiddenCavity
+from core.quality.hidden_cavity import HiddenCavity
 from core.quality.view_quality import ViewQuality
 
 FACTS_FILE = "quality.json"

@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter
 
 from core.geometry import BoolArray, FloatArray, IntArray, invert_pose, transform_points
-from core.quality.cavity import HiddenCavity
+from core.quality.hidden_cavity import HiddenCavity
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics
 

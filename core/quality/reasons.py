@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.quality.cavity import HiddenCavity
+from core.quality.hidden_cavity import HiddenCavity
 from core.quality.measures import residual_m, table_sd_m
 from core.quality.view_quality import ViewQuality
 

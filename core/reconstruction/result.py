@@ -12,8 +12,8 @@ from core.errors import SessionError
 from core.files import read_json, write_json
 from core.mesh import TriangleMesh
 from core.ply import read_ply, write_ply
+from core.reconstruction.corrections import Refinement, ViewCorrection
 from core.reconstruction.pose_health import PoseHealth, ViewHealth
-from core.reconstruction.refinement import Refinement, ViewCorrection
 
 MESH_FILE = "mesh.ply"
 FACTS_FILE = "result.json"

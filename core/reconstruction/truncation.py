@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.parameters.reconstruction import ReconstructionParameters
+from core.reconstruction.corrections import Refinement
 from core.reconstruction.pose_health import PoseHealth
-from core.reconstruction.refinement import Refinement
 
 VOXELS_IN_FRONT = 4.0
 FRONT_PER_VIEW_ERROR = 3.0

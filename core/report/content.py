@@ -19,7 +19,7 @@ from core.session.operator_choice import OperatorChoice
 from core.session.pour_runs import PourRun
 
 if TYPE_CHECKING:  # only its numbers are needed here, not the fusion
-    from core.quality import ScanQuality
+    from core.quality.measures import ScanQuality
     from core.reconstruction.result import Reconstruction
 
 Media: TypeAlias = bytes | Path

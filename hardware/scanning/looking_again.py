@@ -8,9 +8,10 @@ import numpy as np
 
 from core.geometry import FloatArray
 from core.motion.view_planning import Dome, ReachableView, ViewTask, reachable_views
-from core.quality import DepthCamera, find_hidden_cavity, propose_views
-from core.quality.cavity import HiddenCavity
-from core.reconstruction import TsdfVolume
+from core.quality.cavity import find_hidden_cavity
+from core.quality.hidden_cavity import HiddenCavity
+from core.quality.next_views import DepthCamera, propose_views
+from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics
 from hardware.cell import Cell
 from hardware.scanning.procedure import ScanProcedure

@@ -12,8 +12,9 @@ from core.errors import MotionError, StageError
 from core.geometry import FloatArray
 from core.motion.route import RouteSettings, find_route
 from core.progress import Reporter
-from core.quality import ViewQuality, check_view, empty_coarse_volume, fuse_coarsely
-from core.reconstruction import TsdfVolume
+from core.quality.cavity import empty_coarse_volume, fuse_coarsely
+from core.quality.view_quality import ViewQuality, check_view
+from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics, RgbdFrame, Scan
 from hardware.cell import Cell
 from hardware.errors import CameraError, CameraLost, RobotError

@@ -23,7 +23,7 @@ from core.geometry import FloatArray
 from core.mesh import TriangleMesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from core.scan import Scan
 from hardware.cell import read_cell
 from hardware.scanning.simulated import simulate_scan

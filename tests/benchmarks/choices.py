@@ -35,7 +35,7 @@ from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from core.workers import RunHere, Task, WorkerPool
 from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.pour_outcome.settings import OutcomeSettings

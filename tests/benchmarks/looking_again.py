@@ -8,8 +8,8 @@ from __future__ import annotations
 from time import perf_counter
 
 from core.progress import Reporter
-from hardware.scanning import ScanProcedure
 from hardware.scanning.looking_again import look_again
+from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
 from tests.core.quality.studio import tube
 from tests.hardware.scanning.test_looking_again import depth_m, scanning

@@ -23,8 +23,10 @@ from core.imagination.results import Containability
 from core.mesh import TriangleMesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
-from core.quality import ScanQuality, assess, coarse_volume
-from core.reconstruction import reconstruct
+from core.quality.cavity import coarse_volume
+from core.quality.measures import ScanQuality
+from core.quality.verdict import assess
+from core.reconstruction.stage import reconstruct
 from core.scan.crop_box import crop_box_of
 from core.workers import WorkerPool
 from hardware.cell import read_cell

@@ -27,7 +27,7 @@ from core.imagination.pours import Pour, replay_task
 from core.parameters import Parameters, load_preset
 from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from core.scan import read_scan
 from core.session import Session
 from core.workers import Task, WorkerPool

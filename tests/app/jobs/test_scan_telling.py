@@ -15,7 +15,7 @@ from core.resources import RESOURCES
 from core.scan.model import RgbdFrame
 from hardware.cell import open_cell, read_cell
 from hardware.errors import RobotLost
-from hardware.scanning import PlannedView, ViewRecord, ViewState
+from hardware.scanning.views import PlannedView, ViewRecord, ViewState
 from hardware.simulation.world import World
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from core.geometry import look_at, make_pose, rotation_z
 from core.mesh import TriangleMesh
-from core.quality import DepthCamera
+from core.quality.next_views import DepthCamera
 from core.scan.model import CropBox, RgbdFrame, Scan
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH, SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, disturb_pose

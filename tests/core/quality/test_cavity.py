@@ -3,8 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.quality import coarse_volume, find_hidden_cavity
-from core.reconstruction import TsdfVolume
+from core.quality.cavity import coarse_volume, find_hidden_cavity
+from core.reconstruction.tsdf import TsdfVolume
 from hardware.simulation.objects import builtin_object
 from tests.core.quality.studio import BOX, FEW_RINGS, PLATFORM_M, on_platform, upside_down
 

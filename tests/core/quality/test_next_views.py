@@ -10,9 +10,9 @@ import pytest
 from core.geometry import look_at
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.quality import coarse_volume, find_hidden_cavity, propose_views
-from core.quality.next_views import revealed_voxels
-from core.reconstruction import reconstruct
+from core.quality.cavity import coarse_volume, find_hidden_cavity
+from core.quality.next_views import propose_views, revealed_voxels
+from core.reconstruction.stage import reconstruct
 from tests.core.quality.studio import BOX, CAMERA, LOW_RINGS, PLATFORM_M, dome, on_platform, tube
 
 COARSE = ReconstructionParameters(voxel_m=0.003, refine_poses=False)

@@ -9,7 +9,9 @@ from core.errors import SessionError
 from core.geometry import make_pose
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.quality import HiddenCavity, ScanQuality, ViewQuality, assess, coarse_volume
+from core.quality.cavity import coarse_volume
+from core.quality.hidden_cavity import HiddenCavity
+from core.quality.measures import ScanQuality
 from core.quality.reasons import (
     HIDDEN_AREA_USABLE_M2,
     RESIDUAL_AGAIN_M,
@@ -19,7 +21,11 @@ from core.quality.reasons import (
     UNSEEN_USABLE,
     judge,
 )
-from core.reconstruction import PoseHealth, Reconstruction, reconstruct
+from core.quality.verdict import assess
+from core.quality.view_quality import ViewQuality
+from core.reconstruction.pose_health import PoseHealth
+from core.reconstruction.result import Reconstruction
+from core.reconstruction.stage import reconstruct
 from tests.core.quality.studio import BOX, PLATFORM_M, TABLE_M
 
 COARSE = ReconstructionParameters(voxel_m=0.003, refine_poses=False)

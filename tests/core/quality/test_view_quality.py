@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from core.geometry import make_pose, rotation_x
-from core.quality import check_view
-from core.quality.view_quality import ModelResiduals
+from core.quality.view_quality import ModelResiduals, check_view
 from tests.core.quality.studio import BOX, CARMINE_INTRINSICS, PLATFORM_M, TABLE_M
 
 

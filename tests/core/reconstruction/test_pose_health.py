@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from core.geometry import make_pose
-from core.reconstruction import measure_pose_health, reconstruct
+from core.reconstruction.pose_health import measure_pose_health
+from core.reconstruction.stage import reconstruct
 from core.reconstruction.truncation import Truncation, choose_truncation, view_error_m
 
 TABLE_M = 0.02

@@ -10,7 +10,7 @@ import trimesh
 
 from core.parameters import load_preset
 from core.progress import Reporter
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from core.scan import Scan, read_scan
 
 

@@ -9,7 +9,7 @@ import trimesh
 
 from core.errors import Cancelled, StageError
 from core.mesh import TriangleMesh
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 
 PLATFORM_M = 0.08
 TABLE_M = 0.02

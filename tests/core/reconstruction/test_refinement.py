@@ -7,7 +7,7 @@ import pytest
 
 from core.geometry import invert_pose, make_pose, transform_points
 from core.parameters import load_preset
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from core.scan import Scan
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from core.errors import StageError
 from core.geometry import look_at
-from core.reconstruction import TsdfVolume
+from core.reconstruction.tsdf import TsdfVolume
 from core.scan import Intrinsics, RgbdFrame
 
 CAMERA = Intrinsics(200.0, 200.0, 49.5, 39.5)

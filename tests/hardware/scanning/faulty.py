@@ -13,9 +13,10 @@ from core.progress import Reporter
 from hardware.cell import Cell, CellSettings, open_cell, read_cell
 from hardware.errors import CameraError, CameraLost
 from hardware.interfaces import Camera, CameraImage, Move, Robot, RobotState
-from hardware.scanning import PlannedView, ScanControl, ScanKeeper, ScanProcedure
-from hardware.scanning.procedure import ViewTaken
-from hardware.scanning.views import name_views
+from hardware.scanning.control import ScanControl
+from hardware.scanning.keeping import ScanKeeper
+from hardware.scanning.procedure import ScanProcedure, ViewTaken
+from hardware.scanning.views import PlannedView, name_views
 from hardware.simulation.world import World
 
 ORIGIN = {"object": "mug", "seed": 3}

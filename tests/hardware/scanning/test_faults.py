@@ -10,8 +10,9 @@ import pytest
 from core.errors import StageError
 from hardware.cell import Cell
 from hardware.errors import CameraLost
-from hardware.scanning import ScanProcedure, ViewState
 from hardware.scanning.keeping import read_views
+from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.views import ViewState
 from hardware.simulation.world import World
 from tests.hardware.scanning.faulty import (
     BlindCamera,

@@ -17,8 +17,10 @@ import pytest
 from core.errors import SessionError
 from core.scan.model import RgbdFrame
 from hardware.cell import Cell, open_cell
-from hardware.scanning import ScanKeeper, ScanProcedure, ViewState, keeping
-from hardware.scanning.keeping import read_views
+from hardware.scanning import keeping
+from hardware.scanning.keeping import ScanKeeper, read_views
+from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.views import ViewState
 from hardware.simulation.world import World
 from tests.hardware.scanning.faulty import (
     ORIGIN,

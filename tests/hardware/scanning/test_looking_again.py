@@ -8,11 +8,11 @@ from core.mesh import TriangleMesh
 from core.motion.clearance import MotionScene
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.reconstruction import reconstruct
+from core.reconstruction.stage import reconstruct
 from core.scan import Scan
 from hardware.cell import open_cell, read_cell
-from hardware.scanning import ScanProcedure
 from hardware.scanning.looking_again import look_again, propose
+from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.placing import world_with

@@ -19,8 +19,10 @@ from core.scan import read_scan
 from core.scan.model import RgbdFrame
 from hardware.cell import Cell, open_cell
 from hardware.errors import RobotStopped
-from hardware.scanning import ScanControl, ScanKeeper, ScanProcedure, ViewRecord, ViewState
-from hardware.scanning.keeping import read_views
+from hardware.scanning.control import ScanControl
+from hardware.scanning.keeping import ScanKeeper, read_views
+from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.views import ViewRecord, ViewState
 from hardware.simulation.world import World
 from tests.hardware.scanning.faulty import (
     ORIGIN,

@@ -17,8 +17,8 @@ from core.session import Session
 
 if TYPE_CHECKING:  # they bring the fusion along
     from core.collision import CollisionModel
-    from core.quality import ScanQuality
-    from core.reconstruction import Reconstruction
+    from core.quality.measures import ScanQuality
+    from core.reconstruction.result import Reconstruction
     from core.scan import CropBox
 
 MM = 1000.0
@@ -155,13 +155,13 @@ def _is_of(session: Session, stage: str, source: str, digest: str) -> bool:
 
 
 def _reconstruction(session: Session) -> Reconstruction:
-    from core.reconstruction import Reconstruction
+    from core.reconstruction.result import Reconstruction
 
     return Reconstruction.load(session.folder("reconstruction"))
 
 
 def _quality(session: Session) -> ScanQuality:
-    from core.quality import ScanQuality
+    from core.quality.measures import ScanQuality
 
     return ScanQuality.load(session.folder("quality"))
 

@@ -22,7 +22,7 @@ from app.gui.views.labels import text_label
 from core.geometry import FloatArray
 
 if TYPE_CHECKING:  # it brings the fusion along
-    from core.quality import ViewQuality
+    from core.quality.view_quality import ViewQuality
 
 ML = 1e6
 _TABLE_ROWS = 7

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from core.geometry import FloatArray
     from core.mesh import TriangleMesh
-    from core.quality import ScanQuality
-    from core.reconstruction import Reconstruction
+    from core.quality.measures import ScanQuality
+    from core.reconstruction.result import Reconstruction
     from hardware.cell import CellSettings
-    from hardware.scanning import ViewRecord
+    from hardware.scanning.views import ViewRecord
 
 Source = Literal["nothing", "kept", "scan", "mesh"]
 """Nothing yet; views of a scan that was interrupted; a finished scan; an imported mesh."""
@@ -124,7 +124,7 @@ def load_hidden_area(session: Session) -> float:
     Raises:
         SessionError: the scan was not judged yet.
     """
-    from core.quality import ScanQuality
+    from core.quality.measures import ScanQuality
 
     return ScanQuality.load(session.folder("quality")).cavity.area_m2
 
@@ -206,8 +206,8 @@ def _picture(path: Path) -> Picture:
 
 def _with_results(session: Session, contents: ScanContents) -> ScanContents:
     """Add what was made from the scan, as far as it is there."""
-    from core.quality import ScanQuality
-    from core.reconstruction import Reconstruction
+    from core.quality.measures import ScanQuality
+    from core.reconstruction.result import Reconstruction
 
     if session.record("quality") is not None:
         quality = ScanQuality.load(session.folder("quality"))

@@ -13,7 +13,7 @@ from app.jobs.scan_news import Proposal, State, ViewNews
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from core.quality import ScanQuality
+    from core.quality.measures import ScanQuality
 
 translate = QCoreApplication.translate
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from html import escape
 from math import degrees, radians
@@ -29,22 +30,21 @@ def _bare(name: str) -> str:
     return next((leaf.removesuffix(suffix) for suffix in _SUFFIXES if leaf.endswith(suffix)), leaf)
 
 
+def _group_and_bare(fact: FieldFacts) -> tuple[str, str]:
+    return fact.name.rpartition(".")[0], _bare(fact.name)
+
+
 def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
 def titles(facts: list[FieldFacts]) -> dict[str, str]:
     """Return `{dotted name: title}`, told apart by the kind of quantity where two in a group are alike."""
+    alike = Counter(map(_group_and_bare, facts))
     found: dict[str, str] = {}
     for fact in facts:
-        bare = _bare(fact.name)
-        group = fact.name.rpartition(".")[0]
-        is_double = any(
-            other.name != fact.name and other.name.rpartition(".")[0] == group and _bare(other.name) == bare
-            for other in facts
-        )
-        kind = f" {_KINDS.get(fact.unit, fact.unit)}" if is_double else ""
-        found[fact.name] = _capital(human_words(bare)) + kind
+        kind = f" {_KINDS.get(fact.unit, fact.unit)}" if alike[_group_and_bare(fact)] > 1 else ""
+        found[fact.name] = _capital(human_words(_bare(fact.name))) + kind
     return found
 
 
