@@ -13,6 +13,8 @@ from core.motion.trajectory import SAMPLE_S, JointTrajectory
 
 MOST_BESIDE_RAD = 0.1
 """A braking arm stays on its way but for the lag of its servo; farther beside, somebody pushed it."""
+_AT_STATION_RAD = 5e-3
+"""As far as the driver lets an arm rest from where it was sent, with room to spare: 4 mm at full reach."""
 _NO_DISTANCE_RAD = 5e-4
 _JOINING_RAD_S = 0.1
 _SPEEDING_UP_S = 1.0
@@ -35,12 +37,16 @@ def plan_back_off(
         MotionError: the arm stands beside its way.
     """
     stopped = moves[index]
+    begin: tuple[PlannedMove, ...] = ()
     if stopped.phase is MovePhase.BACK:
         way, rest = stopped, moves[index + 1 :]
     else:
         counterpart = len(plan.moves) - 1 - index
         back = replace(plan.moves[counterpart], trajectory=stopped.trajectory.reversed())
         way, rest = back, plan.moves[counterpart + 1 :]
+        if stopped.gripper_after is not None and _stands_at_end(stopped.trajectory, joints_rad):
+            # It was stopped while it took the cup: the gripper may hold it already, at its station.
+            begin = (_let_go(stopped, joints_rad),)
     nearest, beside_rad = _nearest(way.trajectory, joints_rad)
     if beside_rad > MOST_BESIDE_RAD:
         raise MotionError(
@@ -49,8 +55,18 @@ def plan_back_off(
         )
     first = replace(way, trajectory=_remainder(way.trajectory, nearest))
     if beside_rad < _NO_DISTANCE_RAD:
-        return (first, *rest)
-    return (_join(way, joints_rad, first.trajectory.start_rad), first, *rest)
+        return (*begin, first, *rest)
+    return (*begin, _join(way, joints_rad, first.trajectory.start_rad), first, *rest)
+
+
+def _stands_at_end(trajectory: JointTrajectory, joints_rad: FloatArray) -> bool:
+    return float(np.abs(trajectory.end_rad - joints_rad).max()) < _AT_STATION_RAD
+
+
+def _let_go(stopped: PlannedMove, joints_rad: FloatArray) -> PlannedMove:
+    """Stand for a moment, then open the gripper."""
+    standing = JointTrajectory(np.array([0.0, _SPEEDING_UP_S]), np.stack([joints_rad, joints_rad]))
+    return PlannedMove("let go of the cup", MovePhase.BACK, standing, stopped.holds_cup, "open")
 
 
 def _nearest(trajectory: JointTrajectory, joints_rad: FloatArray) -> tuple[int, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from threading import Event
+from threading import Event, Lock
 
 from hardware.errors import RobotError
 
@@ -18,6 +18,7 @@ class UrMove:
         self._progress = 0.0
         self._error: RobotError | None = None
         self._is_over = Event()
+        self._lock = Lock()
 
     @property
     def is_done(self) -> bool:
@@ -27,9 +28,11 @@ class UrMove:
     @property
     def progress(self) -> float:
         """Share of the way that is done, 0 to 1."""
-        if not self._is_over.is_set():
-            self._progress = max(self._progress, min(self._ask_progress(), 1.0))
-        return self._progress
+        asked = 0.0 if self._is_over.is_set() else min(self._ask_progress(), 1.0)
+        with self._lock:  # it may have ended meanwhile, and what was asked before must not stay
+            if not self._is_over.is_set():
+                self._progress = max(self._progress, asked)
+            return self._progress
 
     def wait(self, timeout_s: float) -> None:
         """Wait until the target is reached.
@@ -50,8 +53,9 @@ class UrMove:
 
     def end(self, error: RobotError | None, progress: float = 0.0) -> None:
         """Say that it is over, and after which share of the way; only the first word counts."""
-        if self._is_over.is_set():
-            return
-        self._error = error
-        self._progress = 1.0 if error is None else max(self._progress, progress)
-        self._is_over.set()
+        with self._lock:
+            if self._is_over.is_set():
+                return
+            self._error = error
+            self._progress = 1.0 if error is None else max(self._progress, progress)
+            self._is_over.set()

@@ -97,6 +97,17 @@ def test_a_driver_that_dies_or_freezes_stops_the_arm(rig, number, phase):
         pours(rig)
 
 
+def test_a_cup_that_is_being_taken_is_left_at_its_station(rig):
+    thread = rig.pour_in_background()
+    while thread.is_alive() and not rig.arm.gripper.is_closed:
+        time.sleep(0.005)
+    os.kill(driver_pid(), signal.SIGKILL)
+    thread.join(10)
+    assert isinstance(thread.error, RobotError), repr(thread.error)
+    recovers(rig)
+    pours(rig)
+
+
 def test_a_slow_link_costs_time_and_nothing_else(rig):
     rig.controller.command("latency 20 20")
     try:
@@ -163,6 +174,7 @@ def recovers(rig):
     nothing_goes_on(rig)
     rig.pouring.back_off(rig.pouring.plan_back_off())
     assert rig.is_home
+    assert not rig.arm.gripper.is_closed
 
 
 def pours(rig):

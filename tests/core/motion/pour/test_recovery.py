@@ -56,6 +56,14 @@ def test_the_gripper_opens_once_if_the_cup_is_in_the_hand_and_never_closes(plan,
     assert actions == (["open"] if plan.moves[index].holds_cup else [])
 
 
+def test_a_cup_that_is_being_taken_is_let_go_before_the_arm_leaves_its_station(plan):
+    index = next(k for k, move in enumerate(plan.moves) if move.gripper_after == "close")
+    moves = plan_back_off(plan, plan.moves, index, plan.moves[index].trajectory.end_rad + 9e-4)
+    assert moves[0].gripper_after == "open"
+    assert np.ptp(moves[0].trajectory.joints_rad, axis=0).max() == 0
+    assert not moves[1].gripper_after
+
+
 def test_it_begins_and_ends_at_rest_and_is_slower_than_the_plan(plan):
     way = plan.moves[3].trajectory
     first = plan_back_off(plan, plan.moves, 3, way.joints_rad[60])[0].trajectory
