@@ -124,7 +124,7 @@ def test_a_gripper_that_does_not_close_ends_the_run_and_the_hand_withdraws(fresh
         pouring.plan()
     pouring.recover()
     names = [move.name for move in pouring.plan_back_off()]
-    assert names == ["retreat", "home"]
+    assert names == ["let go of the cup", "retreat", "home"], "it may have closed all the same"
     back = PourRun.load(pouring.back_off(pouring.plan_back_off()))
     assert back.is_back_off
     assert back.sentence == "The arm backed off."
