@@ -1,4 +1,4 @@
-"""How a process that computes behaves: quiet on stdout, deaf to Ctrl-C, and gone when its parent is."""
+"""How a process that computes behaves: quiet on stdout, deaf to stopping signals, gone when its parent is."""
 
 from __future__ import annotations
 
@@ -9,13 +9,18 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for_handles
 from typing import NoReturn
+
+_STOPPING = {signal.SIGINT, signal.SIGTERM}
 
 
 def become_worker() -> None:
     """Call this first in a process that was spawned to compute."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in _STOPPING:
+        signal.signal(number, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _STOPPING)
     # PyBullet and its EGL plugin write to file descriptor 1 from C; people pipe what is printed there.
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, 1)
@@ -23,16 +28,17 @@ def become_worker() -> None:
 
 
 @contextmanager
-def children_deaf_to_interrupts() -> Iterator[None]:
-    """Let processes spawned inside inherit an ignored SIGINT: Ctrl-C reaches the whole terminal group."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)
+def children_deaf_to_signals() -> Iterator[None]:
+    """Let processes spawned inside not die of a signal to all: Ctrl-C, or what a service manager sends.
+
+    Their parent hears it, keeps what is worth keeping, and ends them. What comes to it in here is only late.
+    """
+    resource_tracker.ensure_running()  # would be started with the first child, and unblocks what we block
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _STOPPING)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, handler)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _die_with_parent() -> NoReturn:

@@ -14,16 +14,14 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from threading import Thread
 from typing import Any, Protocol
 
 from core.errors import Cancelled, WorkerError
 from core.progress import Reporter
-from core.worker_process import become_worker, children_deaf_to_interrupts
+from core.worker_process import become_worker, children_deaf_to_signals
 
 _POLL_S = 0.05
 _GRACE_S = 0.5
-_LEAVE_S = 0.05
 _PROGRESS_SLOTS = 64
 
 
@@ -86,6 +84,7 @@ class WorkerPool:
         self._context = multiprocessing.get_context("spawn")
         self._executor: ProcessPoolExecutor | None = None
         self._processes: list[Any] = []
+        self._starting: list[Future[Any]] = []
         self._shared = _Channel(self._context.Event(), self._context.Array("d", _PROGRESS_SLOTS, lock=False))
 
     def __enter__(self) -> WorkerPool:
@@ -97,24 +96,19 @@ class WorkerPool:
     def start(self, *modules: str) -> None:
         """Start the processes now, in the background, and let each import `modules`."""
         executor = self._running()
-        for _ in range(self.workers):
-            executor.submit(_import_modules, modules)
+        self._starting += [executor.submit(_import_modules, modules) for _ in range(self.workers)]
 
     def close(self) -> None:
         """End the processes; a running task is killed."""
         if self._executor is None:
             return
         executor, self._executor = self._executor, None
-        # The executor's own thread is waited for: one that still closes its pipes when Python ends would be
-        # woken through a closed one, and that is a traceback on the terminal. It drops what was cancelled
-        # before the processes die, because it cannot mark that as failed.
-        closing = Thread(target=executor.shutdown, kwargs={"cancel_futures": True})
-        closing.start()
-        closing.join(_LEAVE_S)
         for process in self._processes:
             process.kill()
         self._processes = []
-        closing.join()
+        # Waits for the executor's own thread: one that still closes its pipes when Python ends would be woken
+        # through a closed one, and that is a traceback on the terminal.
+        executor.shutdown()
 
     def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
         """Run all tasks and return their results in order.
@@ -126,15 +120,9 @@ class WorkerPool:
         """
         self._shared.cancel.clear()
         self._shared.fractions[:] = [0.0] * _PROGRESS_SLOTS
-        executor = self._running()
+        futures: list[Future[Any]] = []
         try:
-            with children_deaf_to_interrupts():
-                futures = [
-                    executor.submit(_call, index if index < _PROGRESS_SLOTS else None, task)
-                    for index, task in enumerate(tasks)
-                ]
-                self._remember_processes()
-            self._wait(futures, tasks, stage, reporter)
+            self._work_through(tasks, futures, stage, reporter)
             return [future.result() for future in futures]
         except BrokenProcessPool as error:
             self.close()
@@ -142,25 +130,18 @@ class WorkerPool:
                 f"A worker process died during '{stage}' (killed, or out of memory?); run the command again, "
                 "with fewer --workers if memory is short."
             ) from error
-        except Cancelled:
-            self._stop_tasks(futures)
-            raise
         except BaseException:
-            for future in futures:
-                future.cancel()
-            self._shared.cancel.set()
+            self._stop_tasks(futures)
             raise
 
     def _running(self) -> ProcessPoolExecutor:
         if self._executor is None:
-            before = set(multiprocessing.active_children())
+            self._children_before = set(multiprocessing.active_children())
             self._executor = ProcessPoolExecutor(
                 self.workers, self._context, initializer=_initialize, initargs=(self._shared,)
             )
-            self._children_before = before
-            with children_deaf_to_interrupts():
-                for _ in range(self.workers):
-                    self._executor.submit(os.getpid)
+            with children_deaf_to_signals():
+                self._starting = [self._executor.submit(os.getpid) for _ in range(self.workers)]
                 self._remember_processes()
         return self._executor
 
@@ -169,13 +150,25 @@ class WorkerPool:
             child for child in multiprocessing.active_children() if child not in self._children_before
         ]
 
-    def _wait(
-        self, futures: list[Future[Any]], tasks: Sequence[Task], stage: str, reporter: Reporter
+    def _work_through(
+        self, tasks: Sequence[Task], futures: list[Future[Any]], stage: str, reporter: Reporter
     ) -> None:
+        """Give each process one task at a time, so that nothing waits in the executor.
+
+        What waits there must be cancelled when the work is stopped, and an executor that finds a process dead
+        among cancelled tasks breaks: Python then never ends, because arguments are stuck in a pipe.
+        """
         total = sum(task.weight for task in tasks)
-        pending = set(futures)
-        while pending:
+        executor = self._running()
+        pending = {future for future in self._starting if not future.done()}
+        while len(futures) < len(tasks) or pending.intersection(futures):
             reporter.raise_if_cancelled()
+            with children_deaf_to_signals():
+                while len(pending) < self.workers and len(futures) < len(tasks):
+                    slot = len(futures) if len(futures) < _PROGRESS_SLOTS else None
+                    futures.append(executor.submit(_call, slot, tasks[len(futures)]))
+                    pending.add(futures[-1])
+                self._remember_processes()
             finished, pending = wait(pending, timeout=_POLL_S, return_when=FIRST_COMPLETED)
             for future in finished:
                 future.result()  # a failure ends the run at once
@@ -183,17 +176,15 @@ class WorkerPool:
 
     def _done(self, futures: list[Future[Any]], tasks: Sequence[Task]) -> float:
         done = 0.0
-        for index, (future, task) in enumerate(zip(futures, tasks, strict=True)):
+        for index, future in enumerate(futures):
             if future.done():
-                done += task.weight
+                done += tasks[index].weight
             elif index < _PROGRESS_SLOTS:
-                done += task.weight * self._shared.fractions[index]
+                done += tasks[index].weight * self._shared.fractions[index]
         return done
 
     def _stop_tasks(self, futures: list[Future[Any]]) -> None:
         self._shared.cancel.set()
-        for future in futures:
-            future.cancel()
         _, unfinished = wait(futures, timeout=_GRACE_S)
         if unfinished:
             self.close()

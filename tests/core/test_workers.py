@@ -4,6 +4,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 
 import psutil
 import pytest
@@ -30,6 +31,10 @@ def sleep_reporting(seconds):
 
 
 def sleep_deaf(seconds):
+    time.sleep(seconds)
+
+
+def sleep_with(seconds, data):
     time.sleep(seconds)
 
 
@@ -116,6 +121,52 @@ def test_no_thread_of_the_executor_is_left_when_it_is_closed(seconds):
         else:
             workers.run([Task(process_number, ())], "numbers", reporter)
     assert not [t.name for t in set(threading.enumerate()) - before if not isinstance(t, threading.Timer)]
+
+
+STOPPED_BY_A_SIGNAL = """
+import signal, time
+from core.errors import Cancelled
+from core.progress import Reporter
+from core.workers import Task, WorkerPool
+from tests.core.test_workers import sleep_with
+
+if __name__ == "__main__":
+    reporter = Reporter()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: reporter.cancel())
+    with WorkerPool(2) as pool:
+        pool.run([Task(time.sleep, (0.0,))], "start", reporter)
+        print("ready", flush=True)
+        try:
+            pool.run([Task(sleep_with, (60.0, bytes(3_000_000))) for _ in range(40)], "sleep", reporter)
+        except Cancelled:
+            print("cancelled", flush=True)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM], ids=["SIGINT", "SIGTERM"])
+def test_a_signal_to_all_processes_is_the_parents_to_obey(tmp_path, number):
+    """Ctrl-C in a terminal, or `timeout` and service managers: with much handed out, Python still ends."""
+    script = tmp_path / "parent.py"
+    script.write_text(STOPPED_BY_A_SIGNAL)
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    with subprocess.Popen(
+        [sys.executable, str(script)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=environment,
+        text=True,
+        start_new_session=True,
+    ) as parent:
+        try:
+            assert parent.stdout.readline() == "ready\n"
+            time.sleep(0.5)
+            os.killpg(parent.pid, number)
+            said, complained = parent.communicate(timeout=20)
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(parent.pid, signal.SIGKILL)
+    assert (said, complained, parent.returncode) == ("cancelled\n", "", 0)
 
 
 def test_workers_die_with_a_parent_that_is_killed(tmp_path):

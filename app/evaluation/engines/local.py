@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection, wait
 from app.evaluation.engines.engine import MAX_DEATHS, THREADS, Compute, died, faulty, given_up
 from app.evaluation.trial import TrialResult, TrialTask, run_trial
 from core.progress import Reporter
-from core.worker_process import become_worker, children_deaf_to_interrupts
+from core.worker_process import become_worker, children_deaf_to_signals
 
 _POLL_S = 0.1
 
@@ -116,7 +116,7 @@ class _Worker:
         self.connection, theirs = context.Pipe()
         self.job: _Job | None = None
         self._process = context.Process(target=_serve, args=(theirs, compute), daemon=True)
-        with children_deaf_to_interrupts(), _one_thread_each():
+        with children_deaf_to_signals(), _one_thread_each():
             self._process.start()
         theirs.close()
 
