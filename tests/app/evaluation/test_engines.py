@@ -56,8 +56,9 @@ def test_what_kills_and_what_raises_is_a_row(engine, tmp_path):
     assert len(results["c"].trials) == 2, "a row for each variant"
     counts = done(tmp_path / "log.txt")
     # Dask blames whatever a dying worker holds, so there a suspect is tried once more, alone.
-    assert MAX_DEATHS <= counts.pop("c") <= 2 * MAX_DEATHS
-    assert counts == {"a": 1, "b": 2, "d": 1, "e": 1}
+    n_deaths = counts.pop("c")
+    assert MAX_DEATHS <= n_deaths <= 2 * MAX_DEATHS
+    check_done(engine, counts, {"a": 1, "b": 2, "d": 1, "e": 1}, n_deaths + 1)
 
 
 def test_a_worker_killed_from_outside_costs_only_time(engine, tmp_path):
@@ -67,7 +68,14 @@ def test_a_worker_killed_from_outside_costs_only_time(engine, tmp_path):
     results = finished(engine, [fake_task(tmp_path, name, sleep_s=0.4) for name in NAMES])
     killer.join()
     assert not any(trial.problem for result in results.values() for trial in result.trials)
-    assert done(log) == {"a": 1, "b": 1, "c": 2, "d": 1, "e": 1}
+    check_done(engine, done(log), {"a": 1, "b": 1, "c": 2, "d": 1, "e": 1}, n_deaths=1)
+
+
+def check_done(engine, counts, expected, n_deaths):
+    """Check how often each was begun: Dask makes anew what dies with its worker before it is fetched."""
+    lost = n_deaths if isinstance(engine, DaskEngine) else 0
+    assert counts.keys() == expected.keys()
+    assert all(times <= counts[name] <= times + lost for name, times in expected.items()), counts
 
 
 def kill_whoever_does(name, log):
@@ -77,6 +85,7 @@ def kill_whoever_does(name, log):
 
 
 def test_cancelling_ends_the_work(engine, tmp_path):
+    before = set(multiprocessing.active_children())
     reporter = Reporter()
     running = engine.run((fake_task(tmp_path, name, sleep_s=0.3) for name in NAMES), reporter)
     next(running)
@@ -84,7 +93,7 @@ def test_cancelling_ends_the_work(engine, tmp_path):
     with pytest.raises(Cancelled):
         list(running)
     assert sum(done(tmp_path / "log.txt").values()) < len(NAMES)
-    assert not [child for child in multiprocessing.active_children() if child.is_alive()]
+    assert not [child for child in set(multiprocessing.active_children()) - before if child.is_alive()]
 
 
 def test_tasks_are_taken_only_when_there_is_a_worker_for_them(engine, tmp_path):
