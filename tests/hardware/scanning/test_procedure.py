@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from threading import Thread, Timer
 
@@ -171,6 +172,15 @@ def test_a_paused_scan_can_be_cancelled(world: World) -> None:
         scan_into(None, world, control=control, reporter=reporter)
 
 
+@pytest.fixture
+def heard_ctrl_c() -> Iterator[None]:
+    """Whoever runs the tests in the background of a shell has Ctrl-C ignored."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heard_ctrl_c")
 @pytest.mark.parametrize("how", ["cancel", "ctrl-c"])
 def test_stopped_in_mid_move_the_arm_stands_and_the_next_run_continues(
     how: str, world: World, tmp_path: Path, undisturbed: dict[str, bytes]
