@@ -24,6 +24,7 @@ from hardware.cell.scene import pour_cell
 from hardware.errors import RobotError
 from hardware.pouring.pouring import Pouring, PourTarget
 from hardware.pouring.watching import refuse_unready
+from tests.awake import AwakeClock
 
 BOX_SIZE_M = np.array([0.12, 0.12, 0.07])
 POURING = PouringParameters(settle_s=0.1, turn_s=1.0, wait_s=0.1)
@@ -118,10 +119,11 @@ class Rig:
         raise AssertionError(f"the move '{name}' never began: {thread.error!r}")
 
     def seconds_to_rest(self) -> float:
-        began_s = time.monotonic()
-        while self.is_moving:
-            assert time.monotonic() - began_s < 5, "the arm does not come to rest"
-        return time.monotonic() - began_s
+        with AwakeClock() as clock:
+            began_s = clock.now_s()
+            while self.is_moving:
+                assert clock.now_s() - began_s < 5, "the arm does not come to rest"
+            return clock.now_s() - began_s
 
     def _moves_begun(self, run_before: Path | None) -> list[str]:
         """Of the run under way: until it has a folder of its own, the newest one is an earlier run's."""

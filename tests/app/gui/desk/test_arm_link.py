@@ -18,6 +18,7 @@ from core.parameters import apply_settings
 from hardware.cell import read_cell
 from hardware.simulation.ur_controller.addresses import CONTROL_PORT
 from tests.app.sessions import copied
+from tests.awake import AwakeClock
 
 pytest.importorskip("rtde_control")
 
@@ -74,11 +75,12 @@ def controller(desk, line="state"):
 
 
 def seconds_to_rest(desk):
-    began_s = time.monotonic()
-    while json.loads(controller(desk))["is_moving"]:
-        assert time.monotonic() - began_s < 2, "it goes on moving"
-        time.sleep(0.01)
-    return time.monotonic() - began_s
+    with AwakeClock() as clock:
+        began_s = clock.now_s()
+        while json.loads(controller(desk))["is_moving"]:
+            assert clock.now_s() - began_s < 2, "it goes on moving"
+            time.sleep(0.01)
+        return clock.now_s() - began_s
 
 
 def test_stop_is_taken_at_once_while_a_pour_runs_and_the_other_processes_are_busy(

@@ -18,6 +18,7 @@ from hardware.errors import RobotError
 from hardware.robots.ur.move import UrMove
 from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.awake import AwakeClock
 
 HOME = np.array([0.2, -1.6, 1.4, -1.5, -1.5, 0.1])
 NEAR = HOME + np.array([0.2, -0.1, 0.1, 0.15, -0.1, 0.2])
@@ -73,9 +74,10 @@ class Bench:
 
     def seconds_to_rest(self) -> float:
         """From now until the controller says that the arm stands."""
-        began_s = time.monotonic()
-        wait_until(lambda: not self.is_moving())
-        return time.monotonic() - began_s
+        with AwakeClock() as clock:
+            began_s = clock.now_s()
+            wait_until(lambda: not self.is_moving())
+            return clock.now_s() - began_s
 
     def stays_where_it_is(self, for_s: float = 0.3) -> bool:
         before = self.joints()

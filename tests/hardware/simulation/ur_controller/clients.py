@@ -114,9 +114,9 @@ def moves(address: str, period_s: float) -> Any:
     result["reached"] = receive.getActualQ()[0] - home[0]
     control.moveJ(home, 1.0, 8.0, True)
     _wait(lambda: abs(receive.getActualQd()[0]) > 0.9)
-    begin_s = time.monotonic()
+    begin_s = receive.getTimestamp()
     control.stopJ(8.0)
-    result["stop_s"] = time.monotonic() - begin_s
+    result["stop_s"] = receive.getTimestamp() - begin_s
     time.sleep(0.05)
     result["speed_after_stop"] = max(map(abs, receive.getActualQd()))
     target = receive.getActualQ()

@@ -1,0 +1,48 @@
+"""A clock that rests while the whole machine stands still, as a virtual one does for tenths of a second."""
+
+from __future__ import annotations
+
+import time
+from threading import Event, Lock, Thread
+
+_BEAT_S = 0.005
+_STANDSTILL_S = 0.05
+"""Later than this after a beat no process was running; less is what busy processors do."""
+
+
+class AwakeClock:
+    """Counts seconds in which this process could run; used as a context manager."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._over = Event()
+        self._last_s = time.monotonic()
+        self._stood_s = 0.0
+        self._thread = Thread(target=self._watch, daemon=True)
+
+    def __enter__(self) -> AwakeClock:
+        self._last_s = time.monotonic()
+        self._thread.start()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._over.set()
+        self._thread.join()
+
+    def now_s(self) -> float:
+        """Return a time of which only differences mean something."""
+        with self._lock:
+            return self._beat() - self._stood_s
+
+    def _watch(self) -> None:
+        while not self._over.wait(_BEAT_S):
+            with self._lock:
+                self._beat()
+
+    def _beat(self) -> float:
+        now_s = time.monotonic()
+        late_s = now_s - self._last_s - _BEAT_S
+        if late_s > _STANDSTILL_S:
+            self._stood_s += late_s
+        self._last_s = now_s
+        return now_s
