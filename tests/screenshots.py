@@ -12,7 +12,7 @@ from pathlib import Path
 
 from PIL import Image
 from PySide6.QtCore import QSettings
-from PySide6.QtWidgets import QPushButton, QWidget
+from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox, QWidget
 
 from app.gui.main import make_application, open_window
 from app.gui.pages.calibration.page import CalibrationPage
@@ -21,6 +21,7 @@ from app.gui.pages.registry import OTHERS, WORK
 from app.gui.walk import Walk, let_work
 from app.library.places import SESSIONS_VARIABLE
 from core.mesh_file import write_mesh
+from core.parameters import Parameters, apply_settings
 from hardware.simulation.objects import builtin_object
 from tests.app.sessions import make_poured_session, make_session
 
@@ -35,6 +36,7 @@ LABELS = {
     "ring": "non-container",
     "block": "non-container",
 }
+_QUICK_FIT = {"containability.verdict": "omega", "containability.n_max": 40, "containability.n_min": 20}
 _COLORS = 200
 """Enough for a screenshot; a third of the bytes."""
 _SETTLING_S = 1.2
@@ -75,6 +77,7 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
             window.show_page(key)
             if key == "calibration":
                 _calibrate(walk, library.parent / "objects")
+                _fit(walk, target / f"{name}-fit-{theme}-{size[0]}.png")
             if key == "robot" and window.desk.workspace.is_container:
                 _plan(walk)
             _keep(walk, target / f"{name}-{key}-{theme}-{size[0]}.png")
@@ -108,6 +111,25 @@ def _calibrate(walk: Walk, objects: Path) -> None:
         page.press_primary()
         let_work(0.5)
         walk.wait_for_work("the objects are judged", 240)
+
+
+def _fit(walk: Walk, path: Path) -> None:
+    """Fit, with settings that take seconds, and keep a picture of what was found."""
+    page = walk.window.page("calibration")
+    assert isinstance(page, CalibrationPage)
+    if path.name.startswith("block"):
+        return  # what is fitted does not depend on the session
+    page.use_draft(("default", apply_settings(Parameters(), _QUICK_FIT)))
+    walk.click("fit")
+    source = page.findChild(QComboBox, "fit_input")
+    source.setCurrentIndex(source.findData("mesh"))
+    page.findChild(QSpinBox, "fit_seeds").setValue(1)
+    page.findChild(QSpinBox, "fit_trials").setValue(20)
+    walk.click("fit_start")
+    let_work(0.5)
+    walk.wait_for_work("the fit", 240)
+    _keep(walk, path)
+    walk.click("fit_back")
 
 
 def _keep(walk: Walk, path: Path) -> None:

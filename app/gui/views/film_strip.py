@@ -166,7 +166,6 @@ class FilmStrip(QWidget):
         self._view.setEditTriggers(QListView.EditTrigger.NoEditTriggers)
         self._view.setHorizontalScrollMode(QListView.ScrollMode.ScrollPerPixel)
         self._view.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._view.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
         self._view.setModel(self._model)
         self._view.setItemDelegate(_Delegate(height_px, self._view))
         self._view.clicked.connect(self._open)
