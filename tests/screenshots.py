@@ -36,7 +36,13 @@ LABELS = {
     "ring": "non-container",
     "block": "non-container",
 }
-_QUICK_FIT = {"containability.verdict": "omega", "containability.n_max": 40, "containability.n_min": 20}
+_QUICK_FIT = {
+    "containability.verdict": "omega",
+    "containability.n_max": 40,
+    "containability.n_min": 20,
+    "containability.contact.rolling_friction": 0.3,  # candies stick where they fall, until it is fitted
+    "containability.contact.lateral_friction": 0.6,
+}
 _COLORS = 200
 """Enough for a screenshot; a third of the bytes."""
 _SETTLING_S = 1.2
