@@ -26,8 +26,8 @@ CHECK_STEPS = 4
 _REGION_MARGIN_M = 0.015
 _SAFE_MOVE_M = 0.0009
 """Bullet sees a triangle from 1 mm away: a candy that moves on by more between two looks slips through it."""
-_SAFE_SHARE_OF_SKIN = 0.6
-"""Of the skin around a hull, through which a triangle may come before it is lost from sight."""
+_SAFE_SHARE_OF_RADIUS = 0.5
+"""Of a ball, which a wall sees until its centre is through."""
 _DRIVEN_MASS_KG = 1e4
 
 
@@ -60,7 +60,7 @@ class BulletWorld:
         self._contact = contact
         self._region_m = (region_m + np.array([[-_REGION_MARGIN_M], [_REGION_MARGIN_M]])).tolist()
         self._skin_m = ellipsoid_skin_m(particle) if particle.shape == "ellipsoid" else 0.0
-        self._safe_m_s = max(_SAFE_MOVE_M, _SAFE_SHARE_OF_SKIN * self._skin_m) * solver.rate_hz
+        self._safe_m_s = self._safe_move_m() * solver.rate_hz
         self._client = _server()
         self._substeps = 0
         self._steps = 0
@@ -219,6 +219,13 @@ class BulletWorld:
                 velocity, _ = bullet.getBaseVelocity(body_id, physicsClientId=self._client)
                 top_speed_m_s = max(top_speed_m_s, hypot(*velocity))
         self._set_substeps(min(ceil(top_speed_m_s / self._safe_m_s), self._solver.substeps))
+
+    def _safe_move_m(self) -> float:
+        """How far a particle may move in one computation without slipping through a wall (decision 0001)."""
+        if self._particle.shape == "sphere":
+            return max(_SAFE_MOVE_M, _SAFE_SHARE_OF_RADIUS * self._particle.diameter_m / 2)
+        # A wall that is in the skin, and not yet in the hull, is still seen.
+        return max(_SAFE_MOVE_M, self._skin_m)
 
     def _set_substeps(self, substeps: int) -> None:
         """Compute each step in `substeps` parts; Bullet counts 0 as one."""

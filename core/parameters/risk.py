@@ -13,7 +13,7 @@ class RiskParameters(Group):
     """Pours imagined again with errors of the set-up; the choice is the pour least likely to spill."""
 
     n_tries: int = quantity(
-        48,
+        24,
         "Most imagined pours with errors, spent on the most promising of the 24; 0: none, and the paper's "
         "rule chooses.",
         unit="",
