@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from time import perf_counter
 
 from core.collision import CollisionModel
+from core.geometry import BoolArray
 from core.imagination.amount.deciding import decide_amount, is_number_in_one_cup
 from core.imagination.amount.result import Amount
 from core.imagination.body import body_files
@@ -151,6 +152,8 @@ def imagine_grid_risk(
     parameters: Parameters,
     runner: TaskRunner,
     reporter: Reporter,
+    known: PourRisk | None = None,
+    feasible: BoolArray | None = None,
 ) -> PourRisk | None:
     """Find the risk of pours that were imagined before; none if the parameters ask for no tries.
 
@@ -161,13 +164,15 @@ def imagine_grid_risk(
         parameters: of the imagination.
         runner: where to compute.
         reporter: receives the progress.
+        known: earlier tries, to which these are added; none: there were none.
+        feasible: (I, 3) which pours the arm can make; none: all of them.
 
     Raises:
         StageError: the cup cannot hold N_pour.
     """
     with body_files(object=(model.parts, not model.is_convex)) as files:
         target = object_at_rest(model, files["object"], parameters)
-        return imagine_risk(target, grid, runs, parameters, runner, reporter)
+        return imagine_risk(target, grid, runs, parameters, runner, reporter, known, feasible)
 
 
 def _packings(parameters: Parameters) -> range:

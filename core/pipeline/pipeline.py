@@ -12,16 +12,19 @@ import numpy as np
 from core.collision import CollisionModel, from_parts
 from core.errors import SessionError
 from core.files import read_json, write_json
-from core.imagination.imagine import Imagination, imagine
+from core.geometry import BoolArray
+from core.imagination.cup_runs import CupRuns
+from core.imagination.imagine import Imagination, imagine, imagine_grid_risk
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
 from core.imagination.rendering.shapes import cup_surface
+from core.imagination.risk.results import PourRisk
 from core.imagination.risk.scan_error import with_scan_error
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh, read_mesh_parts
 from core.mesh_topology import is_convex, join
 from core.motion.pour.cell import PourCell
-from core.motion.pour.choosing import PourMotions
+from core.motion.pour.choosing import PourMotions, feasible_pours
 from core.motion.pour.planning import judge_pours
 from core.parameters import Parameters, load_preset
 from core.pipeline import kept_imagination
@@ -198,7 +201,7 @@ class Pipeline:
         inputs = self._digests(needs.inputs)
         if all(self.session.is_fresh(stage, inputs, settings) for stage in ("containability", "pouring")):
             return self._load_imagination()
-        result = imagine(model, self._with_scan_error(), self.pool, self.reporter)
+        result = imagine(model, self._with_scan_error(self.parameters), self.pool, self.reporter)
         with self.session.writing(
             "containability", inputs=inputs, parameters=settings, seconds=result.containability_s
         ) as stage:
@@ -231,8 +234,8 @@ class Pipeline:
             MotionError: the arm cannot even take the cup; the sentence says why.
         """
         imagination = self.imagination()
-        grid = imagination.grid
-        if grid is None:
+        grid, free_choice = imagination.grid, imagination.choice
+        if grid is None or free_choice is None:
             return None
 
         def run() -> PourMotions:
@@ -247,7 +250,8 @@ class Pipeline:
                 self.pool,
                 self.reporter,
             )
-            return PourMotions.of(pours, grid, pouring.cup, imagination.risk)
+            risk = self._risk_among(feasible_pours(pours, grid), imagination)
+            return PourMotions.of(pours, grid, pouring.cup, free_choice, risk)
 
         return self._fresh("motion", ("containability", "pouring"), described, PourMotions.load, run)
 
@@ -290,12 +294,28 @@ class Pipeline:
         write_report(content, path)
         return path
 
-    def _with_scan_error(self) -> Parameters:
+    def _risk_among(self, feasible: BoolArray, imagination: Imagination) -> PourRisk | None:
+        """What is known of the risk, with tries of pours that the arm can make if none of these is sure."""
+        if imagination.grid is None or imagination.risk is None:
+            return None
+        parameters = self._with_scan_error(self.poured_parameters())
+        return imagine_grid_risk(
+            self.collision(),
+            imagination.grid,
+            CupRuns(parameters),
+            parameters,
+            self.pool,
+            self.reporter,
+            imagination.risk,
+            feasible,
+        )
+
+    def _with_scan_error(self, parameters: Parameters) -> Parameters:
         """The parameters as this scan's poses want them; those of a mesh as they are."""
         if self._source() == "mesh":
-            return self.parameters
+            return parameters
         health = self.reconstruction().pose_health
-        return with_scan_error(self.parameters, health.sd_height_m, len(health.views))
+        return with_scan_error(parameters, health.sd_height_m, len(health.views))
 
     def _known_motions(self) -> PourMotions | None:
         """What was found for a cell's arm, if it belongs to these pours."""

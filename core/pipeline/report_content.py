@@ -64,7 +64,7 @@ def gather(
         holding=imagination.holding,
         amount=imagination.amount,
         choice=imagination.choice,
-        risk=imagination.risk,
+        risk=imagination.risk if motions is None or motions.risk is None else motions.risk,
         paper_choice=imagination.paper_choice,
         scan_pictures=_thumbnails(session.path / "scan" / "rgbd"),
         pictures={caption: content for caption, content in named.items() if caption not in films},

@@ -8,7 +8,7 @@ from datetime import datetime
 
 from core.imagination.results import PourChoice, PourGrid
 from core.motion.pour.choosing import PourMotions
-from core.report.sentences import MM, direction_text, place_text
+from core.report.sentences import MM, direction_text, place_text, tries_sentence
 from core.session.operator_choice import OperatorChoice
 from core.session.pour_runs import PourRun
 
@@ -31,10 +31,11 @@ def motion_sentence(motions: PourMotions, grid: PourGrid) -> str:
     said = f"The arm can make {motions.n_feasible} of the {n} pours"
     if not motions.is_changed:
         return f"{said}, the chosen one among them."
+    tries = "" if motions.risk is None else f" {tries_sentence(motions.risk, choice.i, choice.j)}"
     return (
         f"{said}. The best by imagination alone, from {place_text(grid, free.i, free.j)}, is not one of "
         f"them: {motions.at(free.i, free.j).reason} "
-        f"So it pours from {place_text(grid, choice.i, choice.j)}."
+        f"So it pours from {place_text(grid, choice.i, choice.j)}.{tries}"
     )
 
 

@@ -1,8 +1,8 @@
 """How far a particle may move in one computation before it slips through a wall.
 
 Usage: python -m tests.benchmarks.tunnelling
-Throws 768 particles at each speed onto a single sheet of triangles, level and at 30 degrees, and counts those that slip
-through, with steps cut as finely as the program does, and more coarsely; "uncut" never cuts one.
+Throws 768 particles at each speed onto a sheet of triangles, level and at 30 degrees, and counts those that
+slip through, with steps cut as finely as in the program, more finely and more coarsely; "uncut" cuts none.
 """
 
 from __future__ import annotations
@@ -46,7 +46,10 @@ def main() -> None:
     parameters = Parameters()
     kinds = {"candy": candy_itself(parameters)}
     kinds |= {f"ball of {scale} candies across": ball_of(parameters, scale) for scale in BALL_SCALES}
-    print("particle; moves at most, times the program's; " + "; ".join(f"{v} m/s" for v in SPEEDS_M_S), flush=True)
+    print(
+        "particle; moves at most, times the program's; " + "; ".join(f"{v} m/s" for v in SPEEDS_M_S),
+        flush=True,
+    )
     for name, particles in kinds.items():
         for factor in COARSER:
             started = process_time()

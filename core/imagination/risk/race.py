@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.imagination.results import PourGrid
-from core.imagination.risk.results import PourRisk, joined
+from core.imagination.risk.results import NOT_TRIED, PourRisk, joined
 from core.parameters.risk import RiskParameters
 
 ROUND = 4
@@ -23,13 +22,15 @@ class Race:
         tried: [i][j] spilled candies of each try so far.
     """
 
-    def __init__(self, grid: PourGrid, order: Sequence[tuple[int, int]], settings: RiskParameters) -> None:
-        """Begin with the imagined pours; `order` breaks ties, the first is preferred."""
-        self._n_pour = grid.n_pour
+    def __init__(self, known: PourRisk, order: Sequence[tuple[int, int]], settings: RiskParameters) -> None:
+        """Begin with what is known; the pours in `order` compete, of equals the first is preferred."""
+        self._n_pour = known.n_pour
         self._settings = settings
         self._order = {pour: rank for rank, pour in enumerate(order)}
         self._spent = 0
-        self.tried: list[list[list[int]]] = grid.n_spilled.tolist()
+        self.tried: list[list[list[int]]] = [
+            [[n for n in pour if n != NOT_TRIED] for pour in row] for row in known.spilled.tolist()
+        ]
 
     @property
     def risk(self) -> PourRisk:
@@ -38,6 +39,8 @@ class Race:
 
     def next_round(self) -> tuple[tuple[int, int], range] | None:
         """Return the pour to try next and the numbers of its tries; none if the race is over."""
+        if not self._order:
+            return None
         risk = self.risk
         i, j = self._most_promising(risk)
         n_tries = min(ROUND, self._settings.n_tries - self._spent)

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.files import read_json, write_json
 from core.geometry import FloatArray, IntArray
+from core.imagination.results import PourGrid
 
 RISK_FILE = "risk.json"
 NOT_TRIED = -1
@@ -28,6 +29,11 @@ class PourRisk:
 
     n_pour: int
     spilled: IntArray
+
+    @classmethod
+    def as_planned(cls, grid: PourGrid) -> PourRisk:
+        """Return what is known before any try with errors."""
+        return cls(grid.n_pour, grid.n_spilled)
 
     @property
     def n_tries(self) -> IntArray:

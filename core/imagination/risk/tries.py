@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from core.geometry import BoolArray
 from core.imagination.choice import papers_order
 from core.imagination.containability import ObjectAtRest
 from core.imagination.cup_runs import CupRuns
@@ -24,6 +25,8 @@ def imagine_risk(
     parameters: Parameters,
     runner: TaskRunner,
     reporter: Reporter,
+    known: PourRisk | None = None,
+    feasible: BoolArray | None = None,
 ) -> PourRisk | None:
     """Try the most promising pours again with errors; none if the parameters ask for no tries.
 
@@ -36,11 +39,13 @@ def imagine_risk(
         parameters: of the imagination; `risk` says how often and with which errors.
         runner: where to compute.
         reporter: receives the progress.
+        known: earlier tries, to which these are added; none: there were none.
+        feasible: (I, 3) which pours the arm can make; none: all of them.
     """
     settings = parameters.risk
     if settings.n_tries == 0:
         return None
-    race = Race(grid, papers_order(grid), settings)
+    race = Race(known or PourRisk.as_planned(grid), papers_order(grid, feasible), settings)
     center_m = target.aabb_m.mean(axis=0)
     spent = 0
     while (planned := race.next_round()) is not None:

@@ -12,7 +12,7 @@ from core.files import read_json, write_json
 from core.geometry import BoolArray
 from core.imagination.choice import choose_pour
 from core.imagination.results import PourChoice, PourGrid
-from core.imagination.risk.results import PourRisk
+from core.imagination.risk.results import RISK_FILE, PourRisk
 from core.motion.pour.plan import PourFeasibility
 from core.parameters.imagination import CupParameters
 
@@ -27,11 +27,13 @@ class PourMotions:
         pours: all of them, direction by direction.
         choice: the one to make; none if the arm can make none.
         free_choice: what the imagination alone would choose, whether or not the arm can make it.
+        risk: of the pours, with tries among those that the arm can make; none if none were asked for.
     """
 
     pours: tuple[PourFeasibility, ...]
     choice: PourChoice | None
     free_choice: PourChoice
+    risk: PourRisk | None
 
     @classmethod
     def of(
@@ -39,12 +41,12 @@ class PourMotions:
         pours: tuple[PourFeasibility, ...],
         grid: PourGrid,
         cup: CupParameters,
+        free_choice: PourChoice,
         risk: PourRisk | None,
     ) -> PourMotions:
         """Choose among the pours that are feasible: the surest, or by the paper's rule without a risk."""
-        free_choice = choose_pour(grid, cup, risk=risk)
-        assert free_choice is not None, "without a mask every pour competes"
-        return cls(pours, choose_pour(grid, cup, _mask(pours, grid), risk), free_choice)
+        choice = choose_pour(grid, cup, feasible_pours(pours, grid), risk)
+        return cls(pours, choice, free_choice, risk)
 
     @property
     def n_feasible(self) -> int:
@@ -62,13 +64,15 @@ class PourMotions:
         return next(pour for pour in self.pours if (pour.i, pour.j) == (i, j))
 
     def save(self, folder: Path) -> None:
-        """Write `motion.json`."""
+        """Write `motion.json`, and the risk."""
         table: dict[str, Any] = {
             "pours": [asdict(pour) for pour in self.pours],
             "choice": None if self.choice is None else self.choice.to_table(),
             "free_choice": self.free_choice.to_table(),
         }
         write_json(folder / MOTION_FILE, table)
+        if self.risk is not None:
+            self.risk.save(folder)
 
     @classmethod
     def load(cls, folder: Path) -> PourMotions:
@@ -79,10 +83,12 @@ class PourMotions:
             tuple(PourFeasibility(**pour) for pour in table["pours"]),
             None if choice is None else PourChoice.from_table(choice),
             PourChoice.from_table(table.get("free_choice") or table["paper_choice"]),  # its former name
+            PourRisk.load(folder) if (folder / RISK_FILE).is_file() else None,
         )
 
 
-def _mask(pours: tuple[PourFeasibility, ...], grid: PourGrid) -> BoolArray:
+def feasible_pours(pours: tuple[PourFeasibility, ...], grid: PourGrid) -> BoolArray:
+    """Return (I, 3) which pours the arm can make."""
     feasible = np.zeros(grid.n_in.shape[:2], dtype=bool)
     for pour in pours:
         feasible[pour.i, pour.j] = pour.is_feasible

@@ -38,7 +38,9 @@ def thrown(
                 quaternion = Rotation.random(random_state=int(generator.integers(1 << 31))).as_quat()
                 height_m = slope * x + clear_m + generator.uniform(0, 0.02)
                 spin = generator.normal(0, 10, 3)
-                world.add_particle(np.array([x, y, height_m, *quaternion]), np.array([0, 0, -speed_m_s, *spin]))
+                world.add_particle(
+                    np.array([x, y, height_m, *quaternion]), np.array([0, 0, -speed_m_s, *spin])
+                )
         slipped = np.zeros(PER_SIDE**2, dtype=bool)
         for _ in range(round(FALL_S * solver.rate_hz)):
             world.step()

@@ -40,7 +40,7 @@ class ShownPours:
         containability: the verdict before them.
         grid: none if the object is no open container.
         choice: what the imagination alone would choose; none without a grid.
-        risk: of the pours; none if no tries were made.
+        imagined_risk: of the pours, whether or not the arm can make them; none if no tries were made.
         paper_choice: what the paper's rule says; none without a grid.
         amount: how many candies shall go in; none if it is not known what the object holds.
         motions: which ones the cell's arm can make; none if that is not known.
@@ -58,7 +58,7 @@ class ShownPours:
     containability: Containability
     grid: PourGrid | None
     choice: PourChoice | None
-    risk: PourRisk | None
+    imagined_risk: PourRisk | None
     paper_choice: PourChoice | None
     amount: Amount | None
     motions: PourMotions | None
@@ -69,6 +69,12 @@ class ShownPours:
     body: PreparedMesh
     cup: PreparedMesh
     stands_in_cell: bool
+
+    @property
+    def risk(self) -> PourRisk | None:
+        """All tries: those among the pours that the arm can make too, where it was asked."""
+        known = None if self.motions is None else self.motions.risk
+        return known or self.imagined_risk
 
     @property
     def program_choice(self) -> PourChoice | None:

@@ -21,7 +21,7 @@ def grid_of(spilled):
 
 def run(grid, spills, settings=None):
     """Let the pours race; `spills` says how many candies a pour spills in its k-th try."""
-    race = Race(grid, papers_order(grid), settings or RiskParameters())
+    race = Race(PourRisk.as_planned(grid), papers_order(grid), settings or RiskParameters())
     rounds = []
     while (planned := race.next_round()) is not None:
         pour, tries = planned
@@ -64,6 +64,29 @@ def test_the_tries_are_never_more_than_allowed():
     risk, rounds = run(grid_of(np.zeros((8, 3), dtype=int)), lambda pour, k: 1, settings)
     assert risk.n_tries.sum() == 24 + 10
     assert len(rounds) == 3
+
+
+def test_earlier_tries_count_and_only_pours_in_the_order_are_tried_further():
+    grid = grid_of(np.zeros((8, 3), dtype=int))
+    known, _ = run(grid, lambda pour, k: 0)
+    feasible = np.ones((8, 3), dtype=bool)
+    assert Race(known, papers_order(grid, feasible), RiskParameters()).next_round() is None, "one is sure"
+    surest = choose_pour(grid, CUP, risk=known)
+    feasible[surest.i] = False
+    race = Race(known, papers_order(grid, feasible), RiskParameters())
+    while (planned := race.next_round()) is not None:
+        (i, j), tries = planned
+        assert feasible[i, j]
+        assert tries.start == race.risk.n_tries[i, j], "each try has other errors"
+        race.record((i, j), [0] * len(tries))
+    assert race.risk.n_tries[surest.i, surest.j] == known.n_tries[surest.i, surest.j]
+    choice = choose_pour(grid, CUP, feasible, race.risk)
+    assert race.risk.clean_at_least[choice.i, choice.j] >= RiskParameters().sure
+
+
+def test_where_the_arm_can_make_none_nothing_is_tried():
+    known = PourRisk.as_planned(grid_of(np.zeros((8, 3), dtype=int)))
+    assert Race(known, [], RiskParameters()).next_round() is None
 
 
 def test_the_bound_is_the_one_of_the_binomial_distribution():
