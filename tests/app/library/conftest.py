@@ -65,7 +65,7 @@ class SessionMaker:
             for i in (0, 1)
             for j in range(3)
         )
-        motions = PourMotions(feasible, choice(*chosen), choice(0, 1))
+        motions = PourMotions(feasible, choice(*chosen), choice(0, 1), None)
         with Session.open(folder) as session:
             self._stage(session, "motion", ("containability", "pouring"), motions.save)
 

@@ -49,7 +49,7 @@ def page(results):
         seconds={"reconstruction": 3.0, "pouring": 17.5},
         versions={"python": "3.11.7"},
         warnings=("The views disagree by 3.0 mm: calibrate the camera, or scan again.",) * 4,
-        motions=PourMotions(pours, results.choice(0, 1), results.choice(0, 1)),
+        motions=PourMotions(pours, results.choice(0, 1), results.choice(0, 1), None),
         runs=tuple(PourRun(None, events, None) for _ in range(30)),
     )
     return render_page(content)
