@@ -1,7 +1,7 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test setup setup-test lint unit bench accuracy choices evaluation-cost judgement capacity holding amounts collision-table looking-again pose-errors pour-plans pour-faults pour-soak scene-speed window-start window-tour window-kills screenshots clean
+.PHONY: run test setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement capacity holding amounts collision-table looking-again pose-errors pour-plans pour-faults pour-soak scene-speed window-start window-tour window-kills screenshots clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -30,6 +30,9 @@ bench: setup
 
 accuracy: setup
 	.venv/bin/python -m tests.benchmarks.accuracy
+
+tunnelling: setup
+	.venv/bin/python -m tests.benchmarks.tunnelling
 
 choices: setup
 	.venv/bin/python -m tests.benchmarks.choices
