@@ -250,7 +250,9 @@ class Pipeline:
                 self.pool,
                 self.reporter,
             )
-            risk = self._risk_among(feasible_pours(pours, grid), imagination)
+            feasible = feasible_pours(pours, grid)
+            is_free = bool(feasible[free_choice.i, free_choice.j])
+            risk = imagination.risk if is_free else self._risk_among(feasible, imagination)
             return PourMotions.of(pours, grid, pouring.cup, free_choice, risk)
 
         return self._fresh("motion", ("containability", "pouring"), described, PourMotions.load, run)
@@ -295,7 +297,7 @@ class Pipeline:
         return path
 
     def _risk_among(self, feasible: BoolArray, imagination: Imagination) -> PourRisk | None:
-        """What is known of the risk, with tries of pours that the arm can make if none of these is sure."""
+        """What is known of the risk, with further tries of pours that the arm can make until one is sure."""
         if imagination.grid is None or imagination.risk is None:
             return None
         parameters = self._with_scan_error(self.poured_parameters())

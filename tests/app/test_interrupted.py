@@ -71,7 +71,7 @@ def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(tmp_path):
     assert "scan:" not in interrupt_in("containability", out), "finished stages must not run again"
     assert "containability:" in interrupt_in("pouring", out)
     assert run("imagine", out)[0] == 0
-    assert "pouring:" not in interrupt_in("pour", out)
+    assert "containability:" not in interrupt_in("pour", out)
     assert pour_runs(out)[-1].sentence.startswith("Stopped during")
 
 

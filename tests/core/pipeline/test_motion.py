@@ -25,7 +25,7 @@ QUICK = {
     "containability.verdict": "omega",
     "pouring.n_pour": 10,
     "risk.n_tries": 8,
-    "risk.sure": 0.5,
+    "risk.sure": 0.99,
 }
 
 
@@ -76,7 +76,7 @@ def test_the_pour_that_is_made_was_tried_even_if_it_was_not_the_first_choice(pip
     assert json.loads((pipeline.session.folder("pouring") / "risk.json").read_text()) == known.to_table()
 
 
-def test_an_arm_that_can_make_the_sure_pour_costs_no_more_tries(pipeline, monkeypatch):
+def test_an_arm_that_can_make_the_first_choice_costs_no_more_tries(pipeline, monkeypatch):
     cell = pour_cell(read_cell())
     imagination = pipeline.imagination()
     arm_that_cannot(monkeypatch, (imagination.choice.i + 4) % 8)
