@@ -223,9 +223,10 @@ class BulletWorld:
     def _safe_move_m(self) -> float:
         """How far a particle may move in one computation without slipping through a wall (decision 0001)."""
         if self._particle.shape == "sphere":
-            return max(_SAFE_MOVE_M, _SAFE_SHARE_OF_RADIUS * self._particle.diameter_m / 2)
-        # A wall that is in the skin, and not yet in the hull, is still seen.
-        return max(_SAFE_MOVE_M, self._skin_m)
+            seen_m = _SAFE_SHARE_OF_RADIUS * self._particle.diameter_m / 2
+        else:
+            seen_m = self._skin_m  # a wall that is in the skin, and not yet in the hull, is still seen
+        return max(_SAFE_MOVE_M, seen_m)
 
     def _set_substeps(self, substeps: int) -> None:
         """Compute each step in `substeps` parts; Bullet counts 0 as one."""

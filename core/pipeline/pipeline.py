@@ -13,11 +13,13 @@ from core.collision import CollisionModel, from_parts
 from core.errors import SessionError
 from core.files import read_json, write_json
 from core.geometry import BoolArray
+from core.imagination.choice import choose_pour
 from core.imagination.cup_runs import CupRuns
 from core.imagination.imagine import Imagination, imagine, imagine_grid_risk
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
 from core.imagination.rendering.shapes import cup_surface
+from core.imagination.results import PourGrid
 from core.imagination.risk.results import PourRisk
 from core.imagination.risk.scan_error import with_scan_error
 from core.mesh import TriangleMesh
@@ -251,9 +253,10 @@ class Pipeline:
                 self.reporter,
             )
             feasible = feasible_pours(pours, grid)
-            is_free = bool(feasible[free_choice.i, free_choice.j])
-            risk = imagination.risk if is_free else self._risk_among(feasible, imagination)
-            return PourMotions.of(pours, grid, pouring.cup, free_choice, risk)
+            if feasible[free_choice.i, free_choice.j]:
+                return PourMotions(pours, free_choice, free_choice, None)
+            risk = self._risk_among(feasible, grid, imagination.risk)
+            return PourMotions(pours, choose_pour(grid, pouring.cup, feasible, risk), free_choice, risk)
 
         return self._fresh("motion", ("containability", "pouring"), described, PourMotions.load, run)
 
@@ -296,19 +299,17 @@ class Pipeline:
         write_report(content, path)
         return path
 
-    def _risk_among(self, feasible: BoolArray, imagination: Imagination) -> PourRisk | None:
+    def _risk_among(self, feasible: BoolArray, grid: PourGrid, known: PourRisk | None) -> PourRisk | None:
         """What is known of the risk, with further tries of pours that the arm can make until one is sure."""
-        if imagination.grid is None or imagination.risk is None:
-            return None
         parameters = self._with_scan_error(self.poured_parameters())
         return imagine_grid_risk(
             self.collision(),
-            imagination.grid,
+            grid,
             CupRuns(parameters),
             parameters,
             self.pool,
             self.reporter,
-            imagination.risk,
+            known,
             feasible,
         )
 

@@ -64,6 +64,11 @@ def interrupt_in(stage, out):
     return said
 
 
+def scans_on(out):
+    code, _, said = run("scan", "--session", out, "--object=bowl")
+    assert code == 0, said
+
+
 def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(tmp_path):
     out = tmp_path / "demo"
     interrupt_in("scan", out)
@@ -77,7 +82,9 @@ def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(tmp_path):
 
 def test_ctrl_c_after_the_pour_does_not_pour_again(tmp_path):
     out = tmp_path / "demo"
-    interrupt_in("evidence", out)
+    interrupt_in("scan", out)
+    scans_on(out)
+    assert "scan:" not in interrupt_in("evidence", out), "the other command's scan is this session's"
     code, stdout, said = run("demo", f"--out={out}", *QUICK)
     assert code == 0, said
     assert "Open container" in stdout
@@ -94,6 +101,5 @@ def test_kill_9_at_a_random_moment_loses_no_finished_stage(tmp_path):
         time.sleep(generator.uniform(1.0, 8.0))
         process.kill()
         process.communicate()
-    code, _, said = run("scan", "--session", out, "--object=bowl")
-    assert code == 0, said
+    scans_on(out)
     assert run("imagine", out)[0] == 0

@@ -10,11 +10,9 @@ import numpy as np
 
 from core.files import read_json, write_json
 from core.geometry import BoolArray
-from core.imagination.choice import choose_pour
 from core.imagination.results import PourChoice, PourGrid
 from core.imagination.risk.results import RISK_FILE, PourRisk
 from core.motion.pour.plan import PourFeasibility
-from core.parameters.imagination import CupParameters
 
 MOTION_FILE = "motion.json"
 
@@ -27,26 +25,14 @@ class PourMotions:
         pours: all of them, direction by direction.
         choice: the one to make; none if the arm can make none.
         free_choice: what the imagination alone would choose, whether or not the arm can make it.
-        risk: of the pours, with tries among those that the arm can make; none if none were asked for.
+        risk: of the pours, with further tries among those that the arm can make; none if it can make
+            `free_choice`, or no tries were asked for.
     """
 
     pours: tuple[PourFeasibility, ...]
     choice: PourChoice | None
     free_choice: PourChoice
     risk: PourRisk | None
-
-    @classmethod
-    def of(
-        cls,
-        pours: tuple[PourFeasibility, ...],
-        grid: PourGrid,
-        cup: CupParameters,
-        free_choice: PourChoice,
-        risk: PourRisk | None,
-    ) -> PourMotions:
-        """Choose among the pours that are feasible: the surest, or by the paper's rule without a risk."""
-        choice = choose_pour(grid, cup, feasible_pours(pours, grid), risk)
-        return cls(pours, choice, free_choice, risk)
 
     @property
     def n_feasible(self) -> int:
@@ -64,7 +50,7 @@ class PourMotions:
         return next(pour for pour in self.pours if (pour.i, pour.j) == (i, j))
 
     def save(self, folder: Path) -> None:
-        """Write `motion.json`, and the risk."""
+        """Write `motion.json`, and `risk.json` if there were further tries."""
         table: dict[str, Any] = {
             "pours": [asdict(pour) for pour in self.pours],
             "choice": None if self.choice is None else self.choice.to_table(),
