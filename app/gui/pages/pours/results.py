@@ -82,6 +82,11 @@ class ShownPours:
         return self.choice if self.motions is None else self.motions.choice
 
     @property
+    def is_free_choice(self) -> bool:
+        """Whether the program would pour what the imagination alone chose."""
+        return self.motions is None or not self.motions.is_changed
+
+    @property
     def chosen(self) -> tuple[int, int] | None:
         """(i, j) of the pour that will be made; none if there is none."""
         choice = self.operator or self.program_choice

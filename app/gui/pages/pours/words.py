@@ -47,7 +47,7 @@ def why_sentences(pours: ShownPours) -> list[str]:
     said = [] if pours.amount is None else [amount_text(pours.amount)]
     if pours.operator is not None:
         said.append(operator_sentence(pours.operator, grid, pours.program_choice))
-    elif pours.choice is not None and pours.paper_choice is not None:
+    elif pours.is_free_choice and pours.choice is not None and pours.paper_choice is not None:
         if pours.risk is not None:
             said.append(risk_sentence(grid, pours.risk, pours.choice, pours.paper_choice))
         else:
