@@ -1,7 +1,15 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
+QUICK = tests/core/parameters tests/core/session tests/core/evaluation tests/core/report tests/core/scan \
+	tests/core/imagination/amount tests/core/imagination/test_results.py tests/core/imagination/test_race.py \
+	tests/core/imagination/test_particle_shape.py tests/core/motion/test_kinematics.py tests/core/test_stages.py \
+	tests/core/test_mesh.py tests/core/test_mesh_file.py tests/app/operations/test_pouring.py \
+	tests/app/cli/test_remedies.py tests/app/cli/test_parameters.py tests/app/library/test_summary.py \
+	tests/hardware/cell tests/test_no_front_end.py
+OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS_NUM_THREADS=1 \
+	.venv/bin/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement capacity holding amounts collision-table looking-again pose-errors pour-plans pour-faults pour-soak scene-speed window-start window-tour window-kills screenshots clean
+.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement capacity holding amounts worlds collision-table looking-again pose-errors pour-plans pour-faults pour-soak scene-speed window-start window-tour window-kills screenshots clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -21,9 +29,19 @@ lint:
 	.venv/bin/lint-imports
 
 # In two runs: without a screen OpenGL draws nothing, and with one a test's windows would need care.
+# Two processes with their workers are enough threads: more of OpenBLAS's own would only wait for each other.
 unit:
-	env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen .venv/bin/python -m pytest -n 2 --dist loadgroup -m "not gl"
-	$(SCREEN) .venv/bin/python -m pytest -m gl tests/app/gui
+	$(OFFSCREEN) -m "not gl and not system"
+	$(SCREEN) .venv/bin/python -m pytest -m "gl and not system" tests/app/gui
+
+# Whole jobs: demos, pours, faults, kills and the tour of the window, in real processes over real protocols.
+test-system: setup-test
+	$(OFFSCREEN) -m "not gl and system"
+	$(SCREEN) .venv/bin/python -m pytest -m "gl and system" tests/app/gui
+
+# What needs no physics, no window and no clock: the inner loop.
+quick: setup-test lint
+	.venv/bin/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder $(QUICK)
 
 bench: setup
 	.venv/bin/python -m tests.benchmarks.stages
@@ -51,6 +69,9 @@ holding: setup
 
 amounts: setup
 	.venv/bin/python -m tests.benchmarks.amounts
+
+worlds: setup-test
+	.venv/bin/python -m tests.benchmarks.worlds
 
 collision-table: setup
 	.venv/bin/python -m tests.benchmarks.collision_table

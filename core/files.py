@@ -8,18 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 from core.geometry import AnyArray
+
+
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write a file whole or not at all; text as UTF-8.
+
+    Raises:
+        OSError: the file cannot be written; what was there before is untouched.
+    """
+    unfinished = path.with_name(f".{path.name}.part")
+    try:
+        if isinstance(content, str):
+            unfinished.write_text(content, encoding="utf-8")
+        else:
+            unfinished.write_bytes(content)
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def write_json(path: Path, table: dict[str, Any]) -> None:
     """Write a table as JSON for people and programs, whole or not at all; NaN and infinity are refused."""
-    unfinished = path.with_name(f".{path.name}.part")
-    try:
-        unfinished.write_text(json.dumps(table, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-        unfinished.replace(path)
-    finally:
-        unfinished.unlink(missing_ok=True)
+    write_whole(path, json.dumps(table, indent=2, allow_nan=False) + "\n")
 
 
 def read_json(path: Path) -> dict[str, Any]:
@@ -31,9 +43,9 @@ def read_json(path: Path) -> dict[str, Any]:
     try:
         table = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise SessionError(f"{path} cannot be read ({error}); run the stage that writes it again.") from error
+        raise SessionError(f"{path} cannot be read ({error}).", Remedy.RUN_AGAIN) from error
     if not isinstance(table, dict):
-        raise SessionError(f"{path} holds no table; run the stage that writes it again.")
+        raise SessionError(f"{path} does not contain a JSON object.", Remedy.RUN_AGAIN)
     return table
 
 
@@ -52,4 +64,4 @@ def read_arrays(path: Path) -> dict[str, AnyArray]:
         with np.load(path, allow_pickle=False) as archive:
             return {name: archive[name] for name in archive.files}
     except Exception as error:  # zipfile, zlib and numpy each raise their own
-        raise SessionError(f"{path} cannot be read ({error}); run the stage that writes it again.") from error
+        raise SessionError(f"{path} cannot be read ({error}).", Remedy.RUN_AGAIN) from error

@@ -71,9 +71,14 @@ def look_at(eye_m: npt.ArrayLike, target_m: npt.ArrayLike) -> FloatArray:
     eye, target = np.asarray(eye_m, dtype=float), np.asarray(target_m, dtype=float)
     forward = (target - eye) / np.linalg.norm(target - eye)
     up = np.array([0.0, 0.0, 1.0]) if abs(forward[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
-    right = np.cross(forward, up)
+    right = _cross(forward, up)
     right /= np.linalg.norm(right)
-    return make_pose(np.column_stack([right, np.cross(forward, right), forward]), eye)
+    return make_pose(np.column_stack([right, _cross(forward, right), forward]), eye)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """The same bits as `np.cross` of two vectors (3,), which takes ten times as long for its generality."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def ellipsoid_inertia_kg_m2(mass_kg: float, diameter_m: float, height_m: float) -> FloatArray:

@@ -1,12 +1,18 @@
-"""A triangle mesh as plain arrays: what every stage hands to the next."""
+"""A triangle mesh as plain arrays, what every stage hands to the next, and distances to its surface."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from core.geometry import FloatArray, IntArray
+
+_INSIDE_RAYS = 3
+"""Their majority decides what is inside: one may graze an edge."""
 
 
 @dataclass(frozen=True)
@@ -54,3 +60,41 @@ class TriangleMesh:
         center: FloatArray = (volumes[:, None] * (a + b + c) / 4).sum(axis=0) / volumes.sum()
         is_inside = (center >= self.aabb_min_m).all() and (center <= self.aabb_max_m).all()
         return center if is_inside else middle
+
+
+class SurfaceDistance:
+    """Distances of points to a mesh's surface, in single precision; make it in a worker.
+
+    Open3D, which takes a second to load, is loaded by the first one.
+    """
+
+    def __init__(self, mesh: TriangleMesh) -> None:
+        o3d: Any = import_module("open3d")  # as Any: its stubs do not know numpy's arrays
+        self._tensor = o3d.core.Tensor
+        self._scene = o3d.t.geometry.RaycastingScene()
+        faces = self._tensor(mesh.faces.astype(np.uint32))
+        self._scene.add_triangles(self._tensor(mesh.vertices_m.astype(np.float32)), faces)
+
+    def of_m(self, points_m: FloatArray) -> npt.NDArray[np.float32]:
+        """Return how far points (N, 3) are off the surface, (N,)."""
+        distances: npt.NDArray[np.float32] = self._scene.compute_distance(self._points(points_m)).numpy()
+        return distances
+
+    def signed_of_m(self, points_m: FloatArray) -> npt.NDArray[np.float32]:
+        """Return the same, negative inside; the mesh is closed."""
+        points = self._points(points_m)
+        signed: npt.NDArray[np.float32] = self._scene.compute_signed_distance(
+            points, nsamples=_INSIDE_RAYS
+        ).numpy()
+        return signed
+
+    def _points(self, points_m: FloatArray) -> Any:
+        return self._tensor(points_m.astype(np.float32))
+
+
+def surface_difference_m(before: TriangleMesh, after: TriangleMesh) -> FloatArray:
+    """Return how far each vertex (V,) of `after` lies off the surface of `before`: positive outside of it.
+
+    Both are closed, in one frame. Call it in a worker.
+    """
+    return SurfaceDistance(before).signed_of_m(after.vertices_m).astype(float)

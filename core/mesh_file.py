@@ -1,4 +1,4 @@
-"""Reading meshes that people bring along and writing our own.
+"""Reading meshes that people bring along, and reading and writing our own.
 
 Whatever is wrong with a file is said in one sentence that names it. Meshes are in metres; OBJ, PLY, STL and
 OFF have z up, GLB has y up by its standard (glTF 2.0, section 3.4) and is turned.
@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from core.errors import InputError
+from core.errors import InputError, Remedy, SessionError
 from core.geometry import rotation_x
 from core.mesh import TriangleMesh
 from core.mesh_topology import join, topology, weld
-from core.ply import write_ply
 from core.progress import Reporter
 
 MAX_FACES = 2_000_000
@@ -28,13 +27,19 @@ MAX_CROWDED_SHARE = 0.02
 _CENTIMETRES_BELOW = 30.0
 """A larger number is taken for millimetres: household objects measure 3 to 30 cm, 30 mm and more."""
 _CHUNK_BYTES = 1 << 24
+_PLY_FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
+_PLY_HEADER = (
+    "ply\nformat binary_little_endian 1.0\ncomment metres\n"
+    "element vertex {vertices}\nproperty double x\nproperty double y\nproperty double z\n"
+    "element face {faces}\nproperty list uchar int vertex_indices\nend_header\n"
+)
 
 
 def read_mesh(path: Path, reporter: Reporter) -> TriangleMesh:
     """Read all parts of an OBJ, PLY, STL, OFF or GLB file as one mesh, in metres and z up.
 
     Equal vertices are joined; faces without area and unused vertices are dropped. A few non-manifold edges or
-    faces wound against their neighbours are told to `reporter`.
+    faces wound opposite to their neighbours are reported as warnings.
 
     Raises:
         InputError: the file is missing, unreadable, empty, not in metres, inside out, full of non-manifold
@@ -81,13 +86,41 @@ def write_mesh(path: Path, mesh: TriangleMesh) -> None:
     writer(path, mesh)
 
 
+def write_ply(path: Path, mesh: TriangleMesh) -> None:
+    """Write a mesh as binary PLY in double precision, so that reading gives back what was written."""
+    faces = np.empty(len(mesh.faces), dtype=_PLY_FACE)
+    faces["count"], faces["corners"] = 3, mesh.faces
+    header = _PLY_HEADER.format(vertices=len(mesh.vertices_m), faces=len(mesh.faces)).encode()
+    path.write_bytes(header + mesh.vertices_m.astype("<f8").tobytes() + faces.tobytes())
+
+
+def read_ply(path: Path) -> TriangleMesh:
+    """Read a mesh that `write_ply` wrote.
+
+    Raises:
+        SessionError: the file is missing, damaged or of another kind.
+    """
+    try:
+        content = path.read_bytes()
+        end = content.index(b"end_header\n") + len(b"end_header\n")
+        lines = content[:end].decode("ascii").splitlines()
+        n_vertices, n_faces = (int(line.split()[2]) for line in lines if line.startswith("element"))
+        if content[:end] != _PLY_HEADER.format(vertices=n_vertices, faces=n_faces).encode():
+            raise ValueError("another kind of PLY")
+        vertices = np.frombuffer(content, "<f8", count=3 * n_vertices, offset=end).reshape(-1, 3)
+        faces = np.frombuffer(content, _PLY_FACE, count=n_faces, offset=end + vertices.nbytes)["corners"]
+    except (OSError, ValueError) as error:
+        raise SessionError(f"{path} cannot be read ({error}).", Remedy.RUN_AGAIN) from error
+    return TriangleMesh(vertices.astype(np.float64), faces.astype(np.int64))
+
+
 def _check_file(path: Path) -> None:
     if not path.is_file():
         raise InputError(f"There is no mesh file {path}; check the name.")
     counter = _FACE_COUNTERS.get(path.suffix.lower())
     if counter is None:
         known = ", ".join(_FACE_COUNTERS)
-        raise InputError(f"{path} is no mesh file that can be read; convert it to one of {known}.")
+        raise InputError(f"{path} is not a readable mesh file; convert it to one of {known}.")
     try:
         n_faces = counter(path)
     except (OSError, ValueError) as error:
@@ -139,7 +172,7 @@ def _check_numbers(path: Path, parts: list[TriangleMesh]) -> None:
         raise InputError(f"{path} has faces that name vertices it does not hold; export it again.")
     used = np.concatenate([part.vertices_m[part.faces].reshape(-1, 3) for part in parts])
     if not np.isfinite(used).all():
-        raise InputError(f"{path} has vertices that are no finite numbers; repair it in a mesh tool.")
+        raise InputError(f"{path} has vertices that are not finite numbers; repair it in a mesh tool.")
     _check_size(path, float(np.max(used.max(axis=0) / 2 - used.min(axis=0) / 2) * 2))
 
 
@@ -155,7 +188,7 @@ def _check_size(path: Path, extent_m: float) -> None:
     elif extent_m <= 1000 * MAX_EXTENT_M:
         hint = "which looks like millimetres; scale it by 0.001"
     else:
-        hint = "which no cell can hold; scale it"
+        hint = "larger than any cell; scale it"
     raise InputError(f"{path} would be {extent_m:.4g} m large, {hint}, meshes must be in metres.")
 
 
@@ -174,7 +207,7 @@ def _check_topology(path: Path, mesh: TriangleMesh, reporter: Reporter) -> None:
     if facts.n_crowded:
         reporter.warn(f"{path} has {facts.n_crowded} non-manifold edges, shared by more than two faces.")
     if not facts.is_consistent:
-        reporter.warn(f"{path} has neighbouring faces that point to different sides; its volume is unknown.")
+        reporter.warn(f"{path} has neighbouring faces wound to opposite sides; its volume is unknown.")
 
 
 def _count_stl(path: Path) -> int:

@@ -1,10 +1,10 @@
-"""How a stage tells what it is doing and learns that it should stop."""
+"""How a stage reports its progress and learns that it should stop."""
 
 from __future__ import annotations
 
 from threading import Event
 
-from core.errors import Cancelled
+from core.errors import Cancelled, Remedy
 
 
 class Reporter:
@@ -18,10 +18,10 @@ class Reporter:
         self._cancel = Event()
 
     def progress(self, stage: str, done: float, total: float) -> None:
-        """Tell that `done` of `total` units of `stage` are finished."""
+        """Report that `done` of `total` units of `stage` are finished."""
 
     def warn(self, sentence: str) -> None:
-        """Tell something the user should know though the work goes on."""
+        """Report something the user should know though the work goes on."""
 
     def cancel(self) -> None:
         """Ask the running stage to stop; safe from any thread."""
@@ -34,4 +34,4 @@ class Reporter:
     def raise_if_cancelled(self) -> None:
         """Raise `Cancelled` if somebody asked to stop."""
         if self._cancel.is_set():
-            raise Cancelled("Stopped on request; finished stages are kept, run the same command to continue.")
+            raise Cancelled("Stopped on request; finished stages are kept.", Remedy.CONTINUE)

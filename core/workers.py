@@ -1,8 +1,9 @@
 """Worker processes: where physics and rendering run, so that a crash there is a message, not a lost program.
 
-A pool is started early and kept, because starting costs about a second. Every task is a module-level function
-with its arguments; results come back in the order of the tasks whatever the order of completion, so nothing
-depends on the number of workers. Cancelling is asked first (an event the tasks look at) and then enforced.
+A pool is started early and reused, because starting costs about a second. Every task is a module-level
+function with its arguments; results come back in the order of the tasks whatever the order of completion, so
+nothing depends on the number of workers. Cancelling is asked first (an event the tasks look at) and then
+enforced.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from core.errors import Cancelled, WorkerError
+from core.child_process import SPAWN, become_child, children_ignore_signals
+from core.errors import Cancelled, Remedy, WorkerError
 from core.progress import Reporter
-from core.worker_process import become_worker, children_deaf_to_signals
 
 _POLL_S = 0.05
 _GRACE_S = 0.5
@@ -35,7 +36,13 @@ class Task:
 
 
 class TaskRunner(Protocol):
-    """Runs tasks and hands their results back in order: a `WorkerPool`, or `RunHere`."""
+    """Runs tasks and hands their results back in order: a `WorkerPool`, or `RunHere`.
+
+    Attributes:
+        workers: how many tasks run at a time.
+    """
+
+    workers: int
 
     def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
         """Run all tasks and return their results in order."""
@@ -48,11 +55,13 @@ class RunHere:
     Many objects at once are many tasks already: what each of them computes needs no processes of its own.
     """
 
+    workers = 1
+
     def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
         """Run all tasks and return their results in order.
 
         Raises:
-            Cancelled: somebody asked to stop.
+            Cancelled: on request.
             Exception: whatever the first failing task raised.
         """
         results = []
@@ -81,11 +90,10 @@ class WorkerPool:
     def __init__(self, workers: int | None = None) -> None:
         """Make a pool of `workers` processes, by default one for each processor this process may use."""
         self.workers = workers or len(os.sched_getaffinity(0))
-        self._context = multiprocessing.get_context("spawn")
         self._executor: ProcessPoolExecutor | None = None
         self._processes: list[Any] = []
         self._starting: list[Future[Any]] = []
-        self._shared = _Channel(self._context.Event(), self._context.Array("d", _PROGRESS_SLOTS, lock=False))
+        self._shared = _Channel(SPAWN.Event(), SPAWN.Array("d", _PROGRESS_SLOTS, lock=False))
 
     def __enter__(self) -> WorkerPool:
         return self
@@ -127,8 +135,7 @@ class WorkerPool:
         except BrokenProcessPool as error:
             self.close()
             raise WorkerError(
-                f"A worker process died during '{stage}' (killed, or out of memory?); run the command again, "
-                "with fewer --workers if memory is short."
+                f"A worker process died during '{stage}' (killed, or out of memory?).", Remedy.FEWER_WORKERS
             ) from error
         except BaseException:
             self._stop_tasks(futures)
@@ -138,9 +145,9 @@ class WorkerPool:
         if self._executor is None:
             self._children_before = set(multiprocessing.active_children())
             self._executor = ProcessPoolExecutor(
-                self.workers, self._context, initializer=_initialize, initargs=(self._shared,)
+                self.workers, SPAWN, initializer=_initialize, initargs=(self._shared,)
             )
-            with children_deaf_to_signals():
+            with children_ignore_signals():
                 self._starting = [self._executor.submit(os.getpid) for _ in range(self.workers)]
                 self._remember_processes()
         return self._executor
@@ -163,7 +170,7 @@ class WorkerPool:
         pending = {future for future in self._starting if not future.done()}
         while len(futures) < len(tasks) or pending.intersection(futures):
             reporter.raise_if_cancelled()
-            with children_deaf_to_signals():
+            with children_ignore_signals():
                 while len(pending) < self.workers and len(futures) < len(tasks):
                     slot = len(futures) if len(futures) < _PROGRESS_SLOTS else None
                     futures.append(executor.submit(_call, slot, tasks[len(futures)]))
@@ -191,7 +198,7 @@ class WorkerPool:
 
 
 def report_fraction(fraction: float) -> None:
-    """In a task: tell which fraction of it is done, and stop here if the parent asked to.
+    """In a task: report which fraction of it is done, and stop here if the parent asked to.
 
     Raises:
         Cancelled: the parent asked to stop.
@@ -216,7 +223,7 @@ class WorkerReporter(Reporter):
         report_fraction(done / total)
 
     def warn(self, sentence: str) -> None:
-        """Keep the sentence for the parent."""
+        """Collect the sentence for the parent."""
         self.warnings.append(sentence)
 
     def raise_if_cancelled(self) -> None:
@@ -239,4 +246,4 @@ def _import_modules(modules: tuple[str, ...]) -> None:
 def _initialize(channel: _Channel) -> None:
     global _channel
     _channel = channel
-    become_worker()
+    become_child()

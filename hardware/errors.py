@@ -4,7 +4,7 @@ from core.errors import PoursightError
 
 
 class DeviceError(PoursightError):
-    """A device cannot do what it was asked to."""
+    """A device cannot do what was requested."""
 
 
 class DriverMissing(DeviceError):
@@ -20,11 +20,11 @@ class CameraLost(CameraError):
 
 
 class RobotError(DeviceError):
-    """The robot cannot do what it was asked to."""
+    """The robot cannot do what was requested."""
 
 
 class RobotUnreachable(RobotError):
-    """Nobody answers at the robot's address, or somebody who is no UR controller."""
+    """Nobody answers at the robot's address, or something that is not a UR controller."""
 
 
 class RobotLost(RobotError):
@@ -48,7 +48,7 @@ class MoveRefused(RobotError):
 
 
 class RobotStopped(RobotError):
-    """The robot was stopped on its way; it stands somewhere between start and target."""
+    """The robot was stopped before it arrived; it rests somewhere between start and target."""
 
 
 class ProtectiveStop(RobotStopped):

@@ -61,12 +61,12 @@ class Camera(_Device, Protocol):
 
 @dataclass(frozen=True)
 class RobotState:
-    """What the robot says of itself.
+    """What the robot reports of itself.
 
     Attributes:
         joints_rad: (6,) where the joints are.
         target_joints_rad: (6,) where the controller wants them to be at this moment.
-        joint_speeds_rad_s: (6,) how fast they turn.
+        joint_speeds_rad_s: (6,) how fast they rotate.
         T_base_flange: (4, 4) where that puts the flange.
         T_base_tool: (4, 4) the tool's pose, as the controller reports it.
         robot_mode: how far the arm is switched on.
@@ -98,7 +98,7 @@ class RobotState:
 
 
 class Move(Protocol):
-    """A motion on its way."""
+    """A motion under way."""
 
     @property
     def is_done(self) -> bool:
@@ -107,7 +107,7 @@ class Move(Protocol):
 
     @property
     def progress(self) -> float:
-        """Share of the way that is done, 0 to 1."""
+        """Share of the path that is done, 0 to 1."""
         ...
 
     def wait(self, timeout_s: float) -> None:
@@ -146,7 +146,7 @@ class Robot(_Device, Protocol):
     def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> Move:
         """Start to move through joint configurations (N, 6), straight in joint space; return at once.
 
-        The arm stands at each of them. The path must have been checked: the robot itself knows no obstacles.
+        The arm stops at each of them. The path must have been checked: the robot itself knows no obstacles.
 
         Raises:
             RobotError: the robot is elsewhere, moving, not ready, refuses, or cannot be reached.
@@ -191,7 +191,7 @@ class Gripper(_Device, Protocol):
 
     @property
     def is_closed(self) -> bool:
-        """Whether it was last told to close, as read back from the device."""
+        """Whether it was last commanded to close, as read back from the device."""
         ...
 
     def close(self) -> None:

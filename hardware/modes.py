@@ -1,8 +1,13 @@
-"""What a UR controller says of itself; the numbers are those of its data interface (RTDE)."""
+"""What a UR controller reports of itself, and whether an arm in these modes may be commanded.
+
+The numbers are those of its data interface (RTDE).
+"""
 
 from __future__ import annotations
 
 from enum import IntEnum
+
+from hardware.errors import EmergencyStop, ProtectiveStop, RobotError, RobotNotReady
 
 
 class RobotMode(IntEnum):
@@ -54,3 +59,27 @@ class SafetyMode(IntEnum):
     def words(self) -> str:
         """For people."""
         return self.name.lower().replace("_", " ")
+
+
+def unreadiness(safety: SafetyMode, mode: RobotMode) -> RobotError | None:
+    """What prevents motion, in the safety system or the arm's power; none if nothing does."""
+    if safety.is_emergency:
+        return EmergencyStop(
+            "An emergency stop is pressed; see that all is safe, release it and recover the robot."
+        )
+    if safety is SafetyMode.PROTECTIVE_STOP:
+        return ProtectiveStop(
+            "The controller made a protective stop; see what the arm touched or what was too fast for it, "
+            "then recover the robot."
+        )
+    if not safety.may_move:
+        return RobotNotReady(
+            f"The safety system is in '{safety.words}' and does not let the arm move; clear that at the "
+            "robot's panel, then recover the robot."
+        )
+    if mode is not RobotMode.RUNNING:
+        return RobotNotReady(
+            f"The arm is in '{mode.words}', so its brakes hold or its power is off; recover the robot to "
+            "switch it on, when nobody is near."
+        )
+    return None

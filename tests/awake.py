@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from threading import Event, Lock, Thread
 
 _BEAT_S = 0.005
@@ -46,3 +48,12 @@ class AwakeClock:
             self._stood_s += late_s
         self._last_s = now_s
         return now_s
+
+
+@contextmanager
+def within(seconds: float) -> Iterator[None]:
+    """Assert that what is done here takes less, without the time in which the whole machine stood still."""
+    with AwakeClock() as clock:
+        began_s = clock.now_s()
+        yield
+        assert clock.now_s() - began_s < seconds

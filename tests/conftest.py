@@ -6,6 +6,21 @@ from pathlib import Path
 
 import pytest
 
+LONGEST = (
+    "app/cli/test_interrupted.py",
+    "app/cli/test_pour_command.py",
+    "app/cli/test_scan_command.py",
+    "app/cli/test_tune_command.py",
+    "app/gui/pages/robot/test_pouring.py",
+    "app/jobs/test_arm_work.py",
+    "app/jobs/test_scan_work.py",
+    "app/operations/evaluation/test_engines.py",
+    "app/operations/evaluation/test_same_everywhere.py",
+    "core/motion/pour/test_planning.py",
+    "hardware/pouring/test_faults.py",
+)
+"""Files that take longest: begun last, one of them would leave the other processor idle."""
+
 
 @pytest.fixture(scope="session")
 def shared_data() -> Path:
@@ -17,9 +32,6 @@ def shared_data() -> Path:
 
 
 def pytest_collection_modifyitems(items):
-    """What one process runs of several: a file, or all of the app, whose sessions are costly to make."""
+    """Begin with the longest files: one process runs a whole file, whose fixtures are costly to make."""
     here = Path(__file__).parent
-    for item in items:
-        path = item.path.relative_to(here)
-        group = "app" if path.parts[0] == "app" else str(path)
-        item.add_marker(pytest.mark.xdist_group(group))
+    items.sort(key=lambda item: str(item.path.relative_to(here)) not in LONGEST)

@@ -14,11 +14,11 @@ from PIL import Image
 from PySide6.QtCore import QSettings
 from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox, QWidget
 
+from app.gui.headless_check import Walk, let_work
 from app.gui.main import make_application, open_window
-from app.gui.pages.calibration.page import CalibrationPage
 from app.gui.pages.page import PRIMARY
 from app.gui.pages.registry import OTHERS, WORK
-from app.gui.walk import Walk, let_work
+from app.gui.pages.tuning.page import TuningPage
 from app.library.places import SESSIONS_VARIABLE
 from core.mesh_file import write_mesh
 from core.parameters import Parameters, apply_settings
@@ -81,8 +81,8 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
         window.desk.open_session(library / name)
         for key in (*WORK, *OTHERS):
             window.show_page(key)
-            if key == "calibration":
-                _calibrate(walk, library.parent / "objects")
+            if key == "tuning":
+                _judge(walk, library.parent / "objects")
                 _fit(walk, target / f"{name}-fit-{theme}-{size[0]}.png")
             if key == "robot" and window.desk.workspace.is_container:
                 _plan(walk)
@@ -92,7 +92,7 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
 
 
 def _make_objects(folder: Path) -> None:
-    """Built-in objects with their labels, for the Calibrate page."""
+    """Built-in objects with their labels, for the Tune page."""
     folder.mkdir()
     for name in LABELS:
         write_mesh(folder / f"{name}.obj", builtin_object(name))
@@ -107,10 +107,10 @@ def _plan(walk: Walk) -> None:
     walk.wait(lambda: walk.shown(QWidget, "hold_to_pour"), "the pour is planned", 60)
 
 
-def _calibrate(walk: Walk, objects: Path) -> None:
+def _judge(walk: Walk, objects: Path) -> None:
     """Judge the objects, unless an earlier window has."""
-    page = walk.window.page("calibration")
-    assert isinstance(page, CalibrationPage)
+    page = walk.window.page("tuning")
+    assert isinstance(page, TuningPage)
     page.open(objects)
     walk.wait(lambda: walk.window.desk.background.is_idle, "the objects are read", 20)
     if "Run" in page.findChild(QPushButton, PRIMARY).text():
@@ -121,8 +121,8 @@ def _calibrate(walk: Walk, objects: Path) -> None:
 
 def _fit(walk: Walk, path: Path) -> None:
     """Fit, with settings that take seconds, and keep a picture of what was found."""
-    page = walk.window.page("calibration")
-    assert isinstance(page, CalibrationPage)
+    page = walk.window.page("tuning")
+    assert isinstance(page, TuningPage)
     if path.name.startswith("block"):
         return  # what is fitted does not depend on the session
     page.use_draft(("default", apply_settings(Parameters(), _QUICK_FIT)))

@@ -9,20 +9,18 @@ import sys
 from contextlib import suppress
 
 from PySide6.QtCore import QCoreApplication, Qt, QTimer
-from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
-from app.gui.actions import WindowActions
 from app.gui.desk.memory import Memory
-from app.gui.palette import apply_theme
-from app.gui.theme import DARK, LIGHT, THEMES, Theme
-from app.gui.window import MainWindow
+from app.gui.shell.menus import Menus
+from app.gui.shell.window import MainWindow
+from app.gui.theme import apply_theme, theme_named
 from core.errors import InputError
 
-NO_SCREEN = (
-    "There is no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); 'poursight demo' does the whole job "
-    "without one."
-)
+COLLECT_EVERY_MS = 1000
+FIRST_PAINT_MS = 50
+"""Imports in a thread hold the interpreter's lock: with them the first paint took up to twice as long."""
+_SCREEN_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
 
 
 def make_application() -> QApplication:
@@ -34,55 +32,56 @@ def make_application() -> QApplication:
     existing = QApplication.instance()
     if isinstance(existing, QApplication):
         return existing
-    platform = os.environ.get("QT_QPA_PLATFORM", "")
-    if sys.platform == "linux" and not platform and not has_screen():
-        raise InputError(NO_SCREEN)
+    if sys.platform == "linux" and not any(map(os.environ.get, _SCREEN_VARIABLES)):
+        raise InputError(
+            "There is no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); 'poursight demo' does the "
+            "whole job without one."
+        )
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setOrganizationName("Poursight")
     QCoreApplication.setApplicationName("Poursight")
     return QApplication(sys.argv[:1])
 
 
-def has_screen() -> bool:
-    """Whether a window could be shown."""
-    return any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
-
-
-def theme_named(name: str) -> Theme:
-    """Return a theme by its name; `system`: what the desktop around us uses."""
-    if name in THEMES:
-        return THEMES[name]
-    is_dark = QGuiApplication.styleHints().colorScheme() == Qt.ColorScheme.Dark
-    return DARK if is_dark else LIGHT
-
-
 def open_window(application: QApplication) -> MainWindow:
-    """Show the window as it was left, and begin what takes its time."""
+    """Show the window as it was left, and start what is slow."""
     memory = Memory()
     apply_theme(application, theme_named(memory.theme))
     window = MainWindow(memory)
-    window.setMenuBar(WindowActions(window).menus)
+    window.setMenuBar(Menus(window))
     if memory.geometry is not None:
         window.restoreGeometry(memory.geometry)
     _collect_once_ready(window)
     window.show()
-    QTimer.singleShot(0, window.begin)
+    QTimer.singleShot(FIRST_PAINT_MS, window.begin)
     window.offer_cut_off_session()
     return window
 
 
 def _collect_once_ready(window: MainWindow) -> None:
-    """Look for garbage only when all is imported, and never again in what is there by then.
+    """Collect garbage in the window's thread alone, and never again what is there once all is imported.
 
-    It is much and stays for good, and to go through all of it stops every thread for a tenth of a second.
+    Python's own collector runs in whichever thread makes an object; a widget that is destroyed in another
+    thread than the window's ends the process. What is imported is much and permanent: a search through it
+    stops every thread for 0.1 s.
     """
+    timer = QTimer(window, interval=COLLECT_EVERY_MS)
+    timer.timeout.connect(collect_garbage)
 
-    def collect() -> None:
+    def begin() -> None:
         gc.freeze()
-        gc.enable()
+        timer.start()
 
     gc.disable()
-    window.ready.connect(collect)
+    window.ready.connect(begin)
+
+
+def collect_garbage() -> None:
+    """Collect the oldest generation that is due, as Python would by itself."""
+    counts, thresholds = gc.get_count(), gc.get_threshold()
+    due = [generation for generation in (2, 1, 0) if counts[generation] > thresholds[generation]]
+    if due:
+        gc.collect(due[0])
 
 
 def run() -> int:
@@ -98,7 +97,7 @@ def run() -> int:
 
 
 def _close_on_signals(window: MainWindow) -> None:
-    """Ctrl-C and a polite kill close the window; Python only hears of them when it runs now and then."""
+    """Ctrl-C and SIGTERM close the window; Python notices signals only while it runs, hence the timer."""
 
     def leave(*_: object) -> None:
         window.close_without_asking()

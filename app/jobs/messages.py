@@ -1,4 +1,4 @@
-"""What a host process and the program say to each other."""
+"""Messages between the program and a host process."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from core.errors import Remedy
+
 
 @dataclass(frozen=True)
 class StartJob:
-    """Carry out `method(service, face, *arguments)`."""
+    """Carry out `method(service, reporter, *arguments)`."""
 
     method: Callable[..., Any]
     arguments: tuple[Any, ...]
@@ -51,14 +53,14 @@ class Warned:
 
 
 @dataclass(frozen=True)
-class News:
-    """Whatever a job or its service tells on the way; a frozen dataclass of its own."""
+class Event:
+    """Something happened in a job or its service; the payload is a frozen dataclass of its own."""
 
     payload: Any
 
 
 class Status:
-    """Marks news that tell how something is now: of several that wait, only the newest is handed on."""
+    """Marks payloads that say how something is now: of several that wait, only the newest is delivered."""
 
 
 @dataclass(frozen=True)
@@ -84,14 +86,16 @@ class Failed:
     Attributes:
         kind: whether it was stopped, explained itself, met a fault of the program, or its process died.
         sentence: what happened and what to do.
-        details: for whoever wants to know more, such as a traceback; may be empty.
+        details: more of it, such as a traceback; may be empty.
         error: the exception's class, by name.
+        remedy: what the user can do about it; none if the sentence says it.
     """
 
     kind: FailureKind
     sentence: str
     details: str
     error: str
+    remedy: Remedy | None = None
 
 
-Message = Progressed | Warned | News | Finished | Failed
+Message = Progressed | Warned | Event | Finished | Failed

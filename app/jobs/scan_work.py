@@ -1,44 +1,56 @@
-"""Scans, for a host process: one host scans, another pours, and the window talks to both."""
+"""Scanning, for a host process: one host scans, another pours, and the window talks to both."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from threading import Event
-from typing import TYPE_CHECKING
+from threading import Event as Flag
+from threading import Thread
+from typing import TYPE_CHECKING, Any
 
-from app.jobs.arm_news import StopDone
-from app.jobs.face import JobFace
-from app.jobs.messages import News
-from app.jobs.scan_news import Proposal
-from app.jobs.service import Service
-from app.jobs.session_work import SessionTask, working_on
-from app.scanning import ScanWatch, ScanWishes, scan_object
+import numpy as np
+
+from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus, StopDone
+from app.jobs.messages import Event
+from app.jobs.scan_events import MeshGrown, ViewDone, ViewProgress, ViewsPlanned
+from app.jobs.service import JobReporter, Service
+from app.operations.scanning import Proposal, ScanObserver, ScanRequest, propose_views, scan_object
+from app.operations.session import SessionTask, working_on
 from core.errors import Cancelled, PoursightError
+from core.motion.kinematics import flange_pose
 from core.session import Session
 from core.workers import WorkerPool
 
 if TYPE_CHECKING:
+    from core.geometry import FloatArray
+    from core.reconstruction.tsdf import TsdfVolume
+    from core.scan.model import RgbdFrame
     from hardware.cell import Cell, CellSettings
     from hardware.interfaces import Robot
-    from hardware.scanning.control import ScanControl
+    from hardware.scanning.procedure import ScanControl
+    from hardware.scanning.views import ViewRecord
 
 _CLOSING_S = 1.5
+_STATUS_S = 0.1
+_MESH_S = 0.3
+"""Shortest time between two pictures of the growing mesh, ..."""
+_MESH_SHARE = 0.1
+"""... and the share of the scan's time that they may take, if they are large."""
 
 
 @dataclass
 class _Running:
-    """The scan under way.
+    """The current scan.
 
     Attributes:
-        face: of its job.
+        reporter: of its job.
         control: pauses it.
         robot: of its cell, while that is open.
     """
 
-    face: JobFace
+    reporter: JobReporter
     control: ScanControl
     robot: Robot | None = None
 
@@ -48,77 +60,77 @@ class ScanWork(Service):
 
     GIVES_WAY = False
 
-    def __init__(self, tell: Callable[[News], None]) -> None:
-        super().__init__(tell)
-        self._pool = WorkerPool()  # a scan needs none, but the pipeline holds one; no process is started
+    def __init__(self, send: Callable[[Event], None]) -> None:
+        super().__init__(send)
         self._running: _Running | None = None
-        self._is_idle = Event()
+        self._is_idle = Flag()
         self._is_idle.set()
         self._was_stopped = False
 
     def prepare(self) -> None:
         """Import what a scan needs."""
         from core.pipeline import pipeline  # noqa: F401
-        from hardware.scanning import looking_again  # noqa: F401
+        from hardware.scanning import next_best_views  # noqa: F401
         from hardware.simulation import objects, placing  # noqa: F401
 
     def close(self) -> None:
         """Stop the arm."""
         self.stop()
         self._is_idle.wait(_CLOSING_S)
-        self._pool.close()
 
     def scan(
-        self, face: JobFace, task: SessionTask, cell: CellSettings, source: str | None, wishes: ScanWishes
+        self,
+        reporter: JobReporter,
+        task: SessionTask,
+        cell: CellSettings,
+        source: str | None,
+        request: ScanRequest,
     ) -> None:
-        """Scan, or continue, or take views again; tells what `scan_news` and `arm_news` hold.
+        """Scan, or continue, or take views again; publishes the events of `scan_events` and `arm_events`.
 
         Args:
-            face: of the job.
+            reporter: of the job.
             task: the session and its parameters.
             cell: to scan in.
             source: for a simulated cell, a built-in object's name or a mesh file.
-            wishes: what to do beyond the scan itself.
+            request: what to do beyond the scan itself.
 
         Raises:
-            PoursightError: the sentence says what is in the way; every view that was taken is kept.
+            PoursightError: the sentence says what is in the way; no view that was taken is lost.
         """
-        from app.jobs.scan_telling import ScanTelling
-
-        telling = ScanTelling(face.tell, cell)
-        with self._under_way(face) as running:
+        progress = ScanReporter(reporter.publish, cell)
+        with self._under_way(reporter) as running:
 
             @contextmanager
             def opened(cell: Cell) -> Iterator[None]:
                 running.robot = cell.robot
                 try:
-                    with telling.arm(cell):
-                        face.raise_if_cancelled()  # by a stop that came before there was an arm
+                    with progress.arm(cell):
+                        reporter.raise_if_cancelled()  # by a stop that came before there was an arm
                         yield
                 finally:
                     running.robot = None
 
-            watch = ScanWatch(running.control, opened, telling.planned, telling.taken)
-            with working_on(task, self._pool, face) as pipeline:
-                scan_object(pipeline, cell, source, wishes, watch)
+            observer = ScanObserver(running.control, opened, progress.planned, progress.taken)
+            # A scan computes nothing in workers, so that none is started.
+            with WorkerPool() as pool, working_on(task, pool, reporter) as pipeline:
+                scan_object(pipeline, cell, source, request, observer)
 
-    def propose(self, face: JobFace, task: SessionTask, cell: CellSettings) -> Proposal:
-        """Say how many further views would show how much of the inside that the scan did not.
+    def propose(self, reporter: JobReporter, task: SessionTask, cell: CellSettings) -> Proposal:
+        """Find out how many further views would show how much of the inside that the scan did not.
 
         Raises:
             PoursightError: there is no scan, or it cannot be read.
         """
-        from app.jobs.scan_proposing import propose_views
-
-        face.progress("looking again", 0, 1)
+        reporter.progress("looking again", 0, 1)
         return propose_views(Session.open(task.folder).folder("scan"), cell)
 
     def get_ready(self) -> None:
-        """Whoever starts a scan knows of all stops so far; to be ordered before it is started."""
+        """Forget earlier stops; to be ordered before a scan is started."""
         self._was_stopped = False
 
     def pause(self) -> None:
-        """Let the arm stand after the view it is at."""
+        """Let the arm rest after the current view."""
         if (running := self._running) is not None:
             running.control.pause()
 
@@ -128,34 +140,114 @@ class ScanWork(Service):
             running.control.resume()
 
     def stop(self) -> None:
-        """Stop the arm, at once, and end the scan; one that was asked for but has not begun never will."""
-        began_s, said = time.monotonic(), ""
+        """Stop the arm, at once, and end the scan; one that was requested but has not begun never will."""
+        began_s, problem = time.monotonic(), ""
         self._was_stopped = True
         if (running := self._running) is None:
             return
-        running.face.cancel()  # first, for it takes no time, and the scan must not call the stop a fault
+        running.reporter.cancel()  # first: it takes no time, and the scan must not take the stop for a fault
         if (robot := running.robot) is None:
             return
         try:
             robot.stop()
         except PoursightError as error:
-            said = str(error)
-        self._tell(News(StopDone(time.monotonic() - began_s, said)))
+            problem = str(error)
+        self._send(Event(StopDone(time.monotonic() - began_s, problem)))
 
     @contextmanager
-    def _under_way(self, face: JobFace) -> Iterator[_Running]:
-        from hardware.scanning.control import ScanControl
+    def _under_way(self, reporter: JobReporter) -> Iterator[_Running]:
+        from hardware.scanning.procedure import ScanControl
 
         self._is_idle.clear()
-        self._running = running = _Running(face, ScanControl())
+        self._running = running = _Running(reporter, ScanControl())
         try:
             if self._was_stopped:
                 raise Cancelled("STOP was pressed before the scan began; start it again if the arm may move.")
             yield running
         except PoursightError:
-            face.raise_if_cancelled()  # a stopped arm complains: what counts is that somebody wanted it
+            reporter.raise_if_cancelled()  # a stopped arm raises errors, but somebody wanted it to stop
             raise
         finally:
             self._running = None
             self._was_stopped = False
             self._is_idle.set()
+
+
+class ScanReporter:
+    """Publishes the events of one scan."""
+
+    def __init__(self, publish: Callable[[Any], None], cell: CellSettings) -> None:
+        """`publish` takes an event, from any thread; `cell` is scanned in."""
+        self._publish = publish
+        self._cell = cell
+        self._next_mesh_s = 0.0
+
+    def planned(self, records: Sequence[ViewRecord], volume: TsdfVolume) -> None:
+        """Publish which views are to be taken, and which are there already."""
+        self._publish(ViewsPlanned(tuple(self._view(record, self._pose(record)) for record in records)))
+        self._mesh(volume)
+
+    def taken(self, record: ViewRecord, frame: RgbdFrame | None, volume: TsdfVolume) -> None:
+        """Publish what became of a view."""
+        if frame is None:
+            self._publish(ViewDone(self._view(record, self._pose(record)), None, None))
+            return
+        self._publish(ViewDone(self._view(record, frame.T_base_camera), frame.color, frame.depth_m))
+        if time.monotonic() >= self._next_mesh_s:
+            self._mesh(volume)
+
+    def _mesh(self, volume: TsdfVolume) -> None:
+        """Publish what was seen so far."""
+        began_s = time.monotonic()
+        mesh = volume.mesh()
+        self._publish(MeshGrown(mesh.vertices_m.astype(np.float32), mesh.faces.astype(np.int32)))
+        now_s = time.monotonic()
+        self._next_mesh_s = now_s + max(_MESH_S, (now_s - began_s) / _MESH_SHARE)
+
+    @contextmanager
+    def arm(self, cell: Cell) -> Iterator[None]:
+        """Publish the status of the cell's arm while it is connected; a recorded scan has none."""
+        if self._cell.robot.kind == "replay":
+            yield
+            return
+        is_simulated = not self._cell.robot.is_real
+        self._publish(ArmConnected(cell.robot.name, self._cell.robot.address, is_simulated))
+        ended = Flag()
+        thread = Thread(target=self._watch, args=(cell, ended), name="arm's state", daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            ended.set()
+            thread.join()
+            self._publish(ArmDisconnected())
+
+    def _watch(self, cell: Cell, ended: Flag) -> None:
+        self._publish(_status(cell))
+        while not ended.wait(_STATUS_S):
+            self._publish(_status(cell))
+        self._publish(_status(cell))  # how it was left
+
+    def _pose(self, record: ViewRecord) -> FloatArray | None:
+        """Where the camera will be, by kinematics; not known before a recorded scan is played."""
+        if self._cell.robot.kind == "replay":
+            return None
+        return planned_pose(self._cell, record.view.joints_rad)
+
+    def _view(self, record: ViewRecord, T_base_camera: FloatArray | None) -> ViewProgress:
+        return ViewProgress(record.view.name, record.state.value, tuple(record.problems), T_base_camera)
+
+
+def planned_pose(cell: CellSettings, joints_rad: Sequence[float]) -> FloatArray:
+    """Return the pose `T_base_camera` (4, 4) of a cell's camera at joint angles (6,)."""
+    from hardware.cell.settings import ARMS
+
+    pose: FloatArray = flange_pose(ARMS[cell.robot.model], joints_rad) @ cell.camera.pose
+    return pose
+
+
+def _status(cell: Cell) -> ArmStatus:
+    try:
+        return ArmStatus(cell.robot.state(), cell.gripper.is_closed, "")
+    except PoursightError as error:
+        return ArmStatus(None, None, str(error))

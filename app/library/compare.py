@@ -1,25 +1,22 @@
-"""Two sessions side by side, in numbers and sentences for people."""
+"""Two sessions side by side, in numbers and words for people."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from app.library.stages import current_records
+from app.library.session_folder import remembered_parameters
 from app.library.summary import PourScore, SessionSummary, summarize
-from app.remembered import remembered_parameters
 from core.errors import SessionError
-from core.files import read_json
 from core.mesh import TriangleMesh
+from core.mesh_file import read_ply
 from core.mesh_topology import topology
 from core.parameters import Parameters, describe, difference
-from core.pipeline.needs import STAGES
-from core.ply import read_ply
-from core.session import StageRecord
+from core.pipeline.session_view import SessionView
+from core.stages import STAGE_NAMES
 
 MM, ML = 1000.0, 1e6
 UNKNOWN = "–"
@@ -63,10 +60,8 @@ class _Side:
     """What is compared of one session."""
 
     summary: SessionSummary
-    records: Mapping[str, StageRecord]
+    view: SessionView
     mesh: TriangleMesh | None
-    pours: Mapping[str, Any]
-    feasible: tuple[int, int] | None
     parameters: tuple[str, Parameters] | None
 
 
@@ -85,22 +80,9 @@ def _read(session: Path) -> _Side:
     summary = summarize(session)
     if summary.problem:
         raise SessionError(summary.problem)
-    records = current_records(summary.path)
-    source = next((stage for stage in ("reconstruction", "mesh") if stage in records), None)
-    return _Side(
-        summary,
-        records,
-        read_ply(summary.path / source / "mesh.ply") if source else None,
-        read_json(summary.path / "pouring" / "pours.json") if summary.best else {},
-        _feasible(read_json(summary.path / "motion" / "motion.json")) if "motion" in records else None,
-        remembered_parameters(summary.path),
-    )
-
-
-def _feasible(motion: Mapping[str, Any]) -> tuple[int, int]:
-    """Return how many pours the arm can make, and of how many."""
-    pours = motion["pours"]
-    return sum(pour["is_feasible"] for pour in pours), len(pours)
+    view = SessionView.of(summary.path)
+    mesh = read_ply(summary.path / view.source / "mesh.ply") if view.source in view.records else None
+    return _Side(summary, view, mesh, remembered_parameters(summary.path))
 
 
 def _object(a: _Side, b: _Side) -> list[Row]:
@@ -133,17 +115,17 @@ def _pour(a: _Side, b: _Side) -> list[Row]:
         Row(group, "chosen pour", _place(a), _place(b)),
         Row(group, "chosen by", _chooser(one), _chooser(two)),
         _number_row(group, "P of the chosen pour", *chosen, "%"),
-        Row(group, "pours that the arm can make", _share(a.feasible), _share(b.feasible)),
+        Row(group, "pours that the arm can make", _n_feasible(a), _n_feasible(b)),
         _number_row(group, "pours made or begun", one.n_runs, two.n_runs),
         Row(group, "outcome", one.outcome or UNKNOWN, two.outcome or UNKNOWN),
     ]
 
 
 def _times(a: _Side, b: _Side) -> list[Row]:
-    seconds = [{stage: record.seconds for stage, record in side.records.items()} for side in (a, b)]
+    seconds = [{stage: record.seconds for stage, record in side.view.records.items()} for side in (a, b)]
     return [
         _number_row("Time", stage, seconds[0].get(stage), seconds[1].get(stage), "s", 1)
-        for stage in STAGES
+        for stage in STAGE_NAMES
         if stage in seconds[0] or stage in seconds[1]
     ]
 
@@ -188,13 +170,13 @@ def _number_row(
     group: str, what: str, a: float | None, b: float | None, unit: str = "", decimals: int = 0
 ) -> Row:
     """Return a line of two numbers; the difference is that of the numbers as shown, with its sign."""
-    said_a, said_b = (
+    text_a, text_b = (
         UNKNOWN if number is None else f"{number:.{decimals}f} {unit}".rstrip() for number in (a, b)
     )
-    if a is None or b is None or said_a == said_b:
-        return Row(group, what, said_a, said_b)
+    if a is None or b is None or text_a == text_b:
+        return Row(group, what, text_a, text_b)
     apart = round(b, decimals) - round(a, decimals)
-    return Row(group, what, said_a, said_b, f"{apart:+.{decimals}f} {unit}".rstrip())
+    return Row(group, what, text_a, text_b, f"{apart:+.{decimals}f} {unit}".rstrip())
 
 
 def _size(mesh: TriangleMesh | None) -> str:
@@ -223,11 +205,10 @@ def _place(side: _Side) -> str:
     """Say where the chosen pour is made from, in the words of the report."""
     from core.report.sentences import direction_text
 
-    chosen = side.summary.chosen
-    if chosen is None:
+    chosen, pours = side.summary.chosen, side.view.pours
+    if chosen is None or pours is None:
         return UNKNOWN
-    direction = direction_text(side.pours["theta_rad"][chosen.i])
-    return f"from {direction}, {side.pours['indent_m'][chosen.j] * MM:.0f} mm out"
+    return f"from {direction_text(pours.theta_rad[chosen.i])}, {pours.indent_m[chosen.j] * MM:.0f} mm out"
 
 
 def _chooser(summary: SessionSummary) -> str:
@@ -236,5 +217,9 @@ def _chooser(summary: SessionSummary) -> str:
     return f"the operator: {summary.operator_reason}" if summary.operator_reason else "the program"
 
 
-def _share(counted: tuple[int, int] | None) -> str:
-    return UNKNOWN if counted is None else f"{counted[0]} of {counted[1]}"
+def _n_feasible(side: _Side) -> str:
+    """Say how many pours the arm can make."""
+    motions = side.view.motions
+    if motions is None:
+        return UNKNOWN
+    return f"{sum(pour.is_feasible for pour in motions.pours)} of {len(motions.pours)}"

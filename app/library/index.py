@@ -1,4 +1,4 @@
-"""The library: which sessions there are, summed up once and again when they change."""
+"""The library: which sessions there are, summed up once and again when they change; and deleting one."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
-from app.library.files import fingerprint, is_session, thumbnail_fact
+from app.library.session_folder import fingerprint, is_session, thumbnail_fact
 from app.library.summary import SessionSummary, summarize
 from core.errors import SessionError
 from core.session import explained
+from core.session.locking import SessionLock
 
 INDEX_FILE = ".library-index.json"
 """In the first root; it saves time and can be deleted."""
@@ -21,7 +22,7 @@ REMEMBERED_FILE = ".remembered-sessions.json"
 """In the first root: the folders of sessions elsewhere."""
 
 _FORMAT = 1
-"""Of the summaries in the index; another number has all sessions read anew."""
+"""Of the summaries in the index; after a change all sessions are read again."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +39,9 @@ _PATHS = TypeAdapter(list[Path])
 
 
 class Library:
-    """The sessions in some folders, and those elsewhere that somebody opened.
+    """The sessions in some folders, and those elsewhere that were opened.
 
-    Every method may be called in any thread; `refresh` belongs in one beside the window's: it reads the disk.
+    Every method may be called in any thread; `refresh` not in the window's: it reads the disk.
     """
 
     def __init__(self, roots: Sequence[Path]) -> None:
@@ -72,7 +73,7 @@ class Library:
         return tuple(summary for summary in summaries if all(word in _searchable(summary) for word in words))
 
     def remember(self, path: Path) -> None:
-        """Keep a session that lies elsewhere in the library, if it is not there already.
+        """Add a session that lies elsewhere to the library, if it is not there already.
 
         Raises:
             SessionError: the folder is no session, or the library cannot be written.
@@ -86,7 +87,7 @@ class Library:
                 self._write_remembered([*remembered, folder])
 
     def forget(self, path: Path) -> None:
-        """Leave a session that lies elsewhere out of the library; nothing is deleted.
+        """Remove a session that lies elsewhere from the library; nothing is deleted.
 
         Raises:
             SessionError: the library cannot be written.
@@ -110,7 +111,7 @@ class Library:
     def _read_index(self) -> _Index:
         try:
             return _INDEX.validate_json((self._home / INDEX_FILE).read_bytes())
-        except (OSError, ValidationError):  # missing, damaged or of another version: it is made anew
+        except (OSError, ValidationError):  # missing, damaged or of another version: it is rebuilt
             return {}
 
     def _write_index(self) -> None:
@@ -140,6 +141,23 @@ class Library:
                 unfinished.replace(self._home / name)
             finally:
                 unfinished.unlink(missing_ok=True)
+
+
+def send_to_trash(path: Path) -> None:
+    """Move a session's folder into the desktop's trash.
+
+    Raises:
+        SessionError: the folder is no session, a program has it open, or there is no trash; then it stays.
+    """
+    folder = path.absolute()
+    if not is_session(folder):
+        raise SessionError(f"{folder} is no session; only sessions are deleted here.")
+    lock = SessionLock(folder)
+    lock.acquire()
+    try:
+        _move_to_trash(folder)
+    finally:
+        lock.release()
 
 
 def _entry(folder: Path, before: _Index) -> _Entry | None:
@@ -173,3 +191,16 @@ def _searchable(summary: SessionSummary) -> str:
     date = "" if made is None else f"{made:%Y-%m-%d %d %B %Y}"
     words = (summary.name, summary.source, summary.verdict_words, summary.outcome, date)
     return " ".join(words).casefold()
+
+
+def _move_to_trash(folder: Path) -> None:
+    from send2trash import send2trash
+
+    try:
+        send2trash(folder)
+    except OSError as error:
+        reason = error.strerror or str(error) or "there is no trash on its disk"
+        raise SessionError(
+            f"The session {folder} cannot be moved to the trash ({reason}); nothing was deleted: "
+            "delete the folder in a file manager."
+        ) from error

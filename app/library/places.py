@@ -1,4 +1,4 @@
-"""Where sessions live unless somebody chooses another folder."""
+"""Where sessions and saved presets live."""
 
 from __future__ import annotations
 
@@ -8,7 +8,11 @@ from datetime import date
 from itertools import count
 from pathlib import Path
 
-from platformdirs import user_documents_path
+from platformdirs import user_config_path, user_documents_path
+
+from core.errors import InputError
+from core.parameters import PRESET_NAMES
+from core.session import explained
 
 SESSIONS_VARIABLE = "POURSIGHT_SESSIONS"
 """The environment variable that names another folder."""
@@ -26,7 +30,7 @@ def new_session_folder(name: str, root: Path | None = None) -> Path:
     """Return the folder for a new session: today's date and the name; it does not exist and is not made.
 
     Args:
-        name: as somebody typed it.
+        name: as it was typed.
         root: the folder to be in; by default `sessions_folder()`.
     """
     return free_folder(root or sessions_folder(), f"{date.today().isoformat()}-{slug(name)}")
@@ -45,3 +49,37 @@ def slug(name: str) -> str:
     """Return a name fit for a folder on any system: letters, digits and single hyphens."""
     words = re.sub(r"[\W_]+", "-", name.casefold()).strip("-")
     return words[:_LONGEST_SLUG].strip("-") or "session"
+
+
+APPLICATION = "poursight"
+
+
+def presets_folder() -> Path:
+    """Return the folder of named presets; it need not exist yet."""
+    return user_config_path(APPLICATION, appauthor=False) / "presets"
+
+
+def preset_file(name: str) -> Path:
+    """Return the file for a preset of that name; its folder is made, the file is not.
+
+    Raises:
+        InputError: the name is empty or one of the shipped presets'.
+        SessionError: the folder cannot be made.
+    """
+    stem = slug(name) if name.strip() else ""
+    if not stem:
+        raise InputError("A preset needs a name; type one.")
+    if stem in PRESET_NAMES:
+        raise InputError(f"'{stem}' is the name of a preset that the program ships; choose another name.")
+    folder = presets_folder()
+    with explained(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    return folder / f"{stem}.json"
+
+
+def named_preset(name: str) -> str:
+    """Return what `load_preset` takes for a name: the user's preset of that name, or the name as it is."""
+    if name in PRESET_NAMES or not name.strip():
+        return name
+    path = presets_folder() / f"{slug(name)}.json"
+    return str(path) if path.is_file() and not Path(name).is_file() else name

@@ -82,8 +82,8 @@ class _Fit:
     @classmethod
     def of(cls, points_m: FloatArray, width: int, height: int) -> _Fit:
         low, high = points_m.min(axis=0), points_m.max(axis=0)
-        room = (1 - 2 * _MARGIN) * np.array([width, height])
-        scale = float((room / np.maximum(high - low, 1e-9)).min())
+        available_px = (1 - 2 * _MARGIN) * np.array([width, height])
+        scale = float((available_px / np.maximum(high - low, 1e-9)).min())
         return cls((low + high) / 2, scale, np.array([width, height]) / 2)
 
     def px(self, points_m: FloatArray) -> FloatArray:

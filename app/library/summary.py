@@ -1,4 +1,4 @@
-"""What a list of sessions says of one of them, read from its small files alone."""
+"""A session in a list of sessions, summed up from its small files alone."""
 
 from __future__ import annotations
 
@@ -7,17 +7,12 @@ from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 
-from app.library.files import size_bytes
-from app.library.stages import current_records
+from app.library.session_folder import UNFINISHED_SCAN, size_bytes
 from app.library.thumbnail import current_thumbnail
 from core.errors import PoursightError
-from core.files import read_json
-from core.session import Session, StageRecord
-from core.session.operator_choice import read_operator_choice
-from core.session.pour_runs import PourRun, pour_runs
-
-UNFINISHED_SCAN = "scan-in-progress"
-"""`app.scanning.IN_PROGRESS`, without what that module imports."""
+from core.pipeline.session_view import SessionView
+from core.session import StageRecord
+from core.session.pour_runs import pour_runs
 
 
 @dataclass(frozen=True)
@@ -37,13 +32,13 @@ class SessionSummary:
         path: its folder.
         name: what people call it.
         created: ISO 8601 time, UTC.
-        source: where the object is from, such as "scan of mug, simulated cell".
+        source: where its data is from, such as "scan of mug, simulated cell".
         n_views: of the scan; 0 without one.
         is_open_container: the verdict.
         omega: Omega (Eq. 1).
-        omega_threshold: Omega_thr it was held against.
+        omega_threshold: Omega_thr it was compared with.
         capacity_share: what it holds as a share of its convex hull; None if Omega decided.
-        capacity_threshold: what that was held against.
+        capacity_threshold: what that was compared with.
         best: the imagined pour with the largest P; among equals the chosen one.
         chosen: the pour to make: the operator's, else the arm's, else the paper's rule's.
         operator_reason: why the operator chose it; empty if nobody did.
@@ -108,35 +103,33 @@ def summarize(folder: Path) -> SessionSummary:
 
 
 def _summarize(folder: Path) -> SessionSummary:
-    session = Session.open(folder)
-    records = current_records(folder)
-    best, chosen, reason = _pours(folder, records)
+    view = SessionView.of(folder)
+    judged = view.verdict
+    by_capacity = judged.verdict if judged is not None else None
+    best, chosen = _scores(view)
+    operator = view.operator if view.pours is not None else None
     runs = [run for run in pour_runs(folder) if not run.is_back_off]
     outcomes = [run.outcome for run in runs if run.outcome is not None]
-    found = (
-        read_json(folder / "containability" / "containability.json") if "containability" in records else {}
-    )
-    verdict = found.get("verdict") or {}
     return SessionSummary(
         path=folder,
-        name=session.name,
-        created=session.created,
-        source=_source(folder, records),
-        n_views=_n_views(records),
-        is_open_container=found.get("is_open_container"),
-        omega=found.get("omega"),
-        omega_threshold=found.get("omega_threshold"),
-        capacity_share=verdict.get("capacity_share"),
-        capacity_threshold=verdict.get("threshold"),
+        name=view.session.name,
+        created=view.session.created,
+        source=_source(folder, view.records),
+        n_views=_n_views(view.records),
+        is_open_container=judged.is_open_container if judged is not None else None,
+        omega=judged.omega if judged is not None else None,
+        omega_threshold=judged.omega_threshold if judged is not None else None,
+        capacity_share=by_capacity.capacity_share if by_capacity is not None else None,
+        capacity_threshold=by_capacity.threshold if by_capacity is not None else None,
         best=best,
         chosen=chosen,
-        operator_reason=reason,
+        operator_reason=operator.reason if operator is not None else "",
         n_runs=len(runs),
-        outcome=outcomes[-1].sentence if outcomes else _end_of_last(runs),
+        outcome=outcomes[-1].sentence if outcomes else runs[-1].sentence if runs else "",
         n_spilled=outcomes[-1].n_spilled if outcomes else None,
-        stages=tuple(records),
+        stages=tuple(view.records),
         size_bytes=size_bytes(folder),
-        thumbnail=current_thumbnail(folder, records),
+        thumbnail=current_thumbnail(folder, view.records),
     )
 
 
@@ -170,33 +163,11 @@ def _n_views(records: Mapping[str, StageRecord]) -> int:
     return sum(name.endswith(".color.png") for name in records["scan"].files) if "scan" in records else 0
 
 
-def _pours(
-    folder: Path, records: Mapping[str, StageRecord]
-) -> tuple[PourScore | None, PourScore | None, str]:
-    """Return the best and the chosen pour, and why a person chose it if one did."""
-    pouring, before = records.get("pouring"), records.get("containability")
-    if pouring is None or before is None or "pours.json" not in pouring.files:
-        return None, None, ""
-    if pouring.parameters != before.parameters:  # the program was ended between the two
-        return None, None, ""
-    p: list[list[float]] = read_json(folder / "pouring" / "pours.json")["p"]
-    place, reason = _chosen_place(folder, records)
+def _scores(view: SessionView) -> tuple[PourScore | None, PourScore | None]:
+    """Return the best and the chosen pour."""
+    if view.pours is None:
+        return None, None
+    p, place = view.pours.p, view.place
     chosen = None if place is None else PourScore(*place, p[place[0]][place[1]])
     scores = [PourScore(i, j, ratio) for i, row in enumerate(p) for j, ratio in enumerate(row)]
-    return max(scores, key=lambda score: (score.p, score == chosen)), chosen, reason
-
-
-def _chosen_place(folder: Path, records: Mapping[str, StageRecord]) -> tuple[tuple[int, int] | None, str]:
-    """Return (i, j) of the pour to make: a person's, the arm's or the paper's; and the person's reason."""
-    operator = read_operator_choice(folder, records["pouring"].digest)
-    if operator is not None:
-        return (operator.i, operator.j), operator.reason
-    choice_file = (
-        folder / "motion" / "motion.json" if "motion" in records else folder / "pouring" / "choice.json"
-    )
-    table = read_json(choice_file)["choice"]
-    return (None if table is None else (table["i"], table["j"])), ""
-
-
-def _end_of_last(runs: list[PourRun]) -> str:
-    return runs[-1].sentence if runs else ""
+    return max(scores, key=lambda score: (score.p, score == chosen)), chosen

@@ -1,4 +1,4 @@
-"""A small picture of a session, kept in its folder: its evidence, else its scan, else its mesh.
+"""A small picture of a session, stored in its folder: its evidence, else its scan, else its mesh.
 
 Heavy imports come late: a list of sessions only asks whether there is a picture.
 """
@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.library.files import THUMBNAIL_FILE
-from app.library.stages import current_records
+from app.library.session_folder import THUMBNAIL_FILE
 from core.errors import SessionError
+from core.pipeline.session_view import current_records
 from core.session import StageRecord, explained
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ def _draw(source: Path) -> Image:
 
     if source.suffix == ".ply":
         from app.library.shading import shaded_picture
-        from core.ply import read_ply
+        from core.mesh_file import read_ply
 
         return shaded_picture(read_ply(source), SIZE_PX)
     try:
@@ -93,7 +93,7 @@ def _cropped(picture: Image, source: Path) -> Image:
     """Leave the evidence without its caption, and of a scan's view the middle; then to size."""
     from PIL import ImageOps
 
-    from core.imagination.rendering.labels import BAR_PX
+    from core.imagination.rendering.pictures import BAR_PX
 
     width, height = picture.size
     if source.name == _END_STILL:

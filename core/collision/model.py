@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import AnyArray, FloatArray
 from core.mesh import TriangleMesh
@@ -87,7 +87,7 @@ class CollisionModel:
             return cls(str(table["method"]), parts, surface)
         except (KeyError, ValueError) as error:
             raise SessionError(
-                f"The collision model in {folder} is damaged ({error}); build it again."
+                f"The collision model in {folder} is damaged ({error}).", Remedy.RUN_AGAIN
             ) from error
 
 

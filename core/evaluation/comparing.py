@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import json
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from core.errors import InputError
 from core.evaluation.evaluation import Evaluation
-from core.evaluation.intervals import Share
 from core.evaluation.labels import Label
-from core.evaluation.pages.parameter_changes import parameter_changes
-from core.evaluation.statistics import Figures
-from core.evaluation.tables import figures_of
+from core.evaluation.statistics import Figures, Share, figures_of
 from core.evaluation.trials import Measure, Trial
+from core.parameters import Parameters, describe, flatten
 
-Turn = Literal["judged worse", "judged better", "spilled more", "spilled less"]
-TURNS: tuple[Turn, ...] = ("judged worse", "spilled more", "judged better", "spilled less")
+Change = Literal["judged worse", "spilled more", "judged better", "spilled less"]
 
 
 @dataclass(frozen=True)
@@ -30,7 +27,6 @@ class ObjectPair:
         right: trials judged right, before and after; of an ambiguous object none are counted.
         clean: pours made and without a spilled candy, before and after.
         score: mean score, before and after; none if it failed with every seed.
-        measures: what the score is, before and after.
     """
 
     name: str
@@ -38,17 +34,16 @@ class ObjectPair:
     right: tuple[Share, Share]
     clean: tuple[Share, Share]
     score: tuple[float | None, float | None]
-    measures: tuple[Measure, Measure]
 
     @property
-    def turns(self) -> tuple[Turn, ...]:
+    def changes(self) -> tuple[Change, ...]:
         """What became better or worse."""
-        turns: list[Turn] = []
+        changes: list[Change] = []
         if (judged := _trend(self.right)) is not None:
-            turns.append("judged better" if judged > 0 else "judged worse")
+            changes.append("judged better" if judged > 0 else "judged worse")
         if (poured := _trend(self.clean)) is not None:
-            turns.append("spilled less" if poured > 0 else "spilled more")
-        return tuple(turns)
+            changes.append("spilled less" if poured > 0 else "spilled more")
+        return tuple(changes)
 
 
 @dataclass(frozen=True)
@@ -74,9 +69,9 @@ class VariantPair:
         """What judged, before and after."""
         return self.figures[0].measure, self.figures[1].measure
 
-    def turned(self, turn: Turn) -> list[ObjectPair]:
-        """Return the objects that turned so."""
-        return [one for one in self.objects if turn in one.turns]
+    def changed(self, change: Change) -> list[ObjectPair]:
+        """Return the objects that changed so."""
+        return [one for one in self.objects if change in one.changes]
 
 
 @dataclass(frozen=True)
@@ -114,6 +109,7 @@ def compare(before: Evaluation, after: Evaluation) -> Comparison:
         raise InputError("The two evaluations have no object in common; compare two of the same objects.")
     shared = [variant for variant in after.variants if variant in before.variants]
     pairs = [(variant, variant) for variant in shared] or [(before.variants[0], after.variants[0])]
+    digests = {name: (old[name].sha256, new[name].sha256) for name in common}
     return Comparison(
         tuple(row for row in _settings(before, after) if row[1] != row[2]),
         tuple(parameter_changes(before.parameters, after.parameters)),
@@ -123,36 +119,42 @@ def compare(before: Evaluation, after: Evaluation) -> Comparison:
         tuple(
             (name, old[name].label, new[name].label) for name in common if old[name].label != new[name].label
         ),
-        tuple(
-            name
-            for name in common
-            if old[name].sha256 and new[name].sha256 and old[name].sha256 != new[name].sha256
-        ),
+        tuple(name for name, pair in digests.items() if all(pair) and pair[0] != pair[1]),
     )
 
 
-def write_comparison(before: Evaluation, after: Evaluation, path: Path) -> str:
-    """Write the comparison of two evaluations as one HTML file.
+def default_parameters() -> dict[str, Any]:
+    """Return the default ones by dotted name, as plain JSON, as an evaluation keeps them."""
+    plain: dict[str, Any] = json.loads(json.dumps(flatten(Parameters())))
+    return plain
 
-    Args:
-        before: the earlier one.
-        after: the later one.
-        path: of the HTML file.
 
-    Returns:
-        The same as text for a terminal.
+def parameter_changes(before: Mapping[str, Any], after: Mapping[str, Any]) -> list[tuple[str, str, str, str]]:
+    """Return (name, value before, value after, what it means) of each parameter that differs.
 
-    Raises:
-        InputError: they have no object in common.
-        SessionError: the disk is full or the folder may not be written.
+    They may come from different versions of the program. The seed is left out: an evaluation has several.
     """
-    from core.evaluation.comparison_text import comparison_text
-    from core.evaluation.pages.comparison import comparison_page
-    from core.evaluation.pages.rendering import write_whole
+    facts = {fact.name: fact for fact in describe()}
+    rows = []
+    for name in {**before, **after}:
+        if name == "seed" or (name in before and name in after and before[name] == after[name]):
+            continue
+        unit, doc = (facts[name].unit, facts[name].doc) if name in facts else ("", "not in this version")
+        rows.append((name, _value_text(before, name, unit), _value_text(after, name, unit), doc))
+    return rows
 
-    found = compare(before, after)
-    write_whole(path, comparison_page(found, before, after))
-    return comparison_text(found)
+
+def _value_text(values: Mapping[str, Any], name: str, unit: str) -> str:
+    if name not in values:
+        return "not there"
+    value = values[name]
+    if value is None:
+        return "automatic"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    several = value if isinstance(value, list) else [value]
+    text = ", ".join(f"{one:.6g}" if isinstance(one, float) else str(one) for one in several)
+    return f"{text} {unit}".rstrip()
 
 
 def _settings(before: Evaluation, after: Evaluation) -> Iterable[tuple[str, str, str]]:
@@ -162,44 +164,43 @@ def _settings(before: Evaluation, after: Evaluation) -> Iterable[tuple[str, str,
     yield "variants", ", ".join(before.variants), ", ".join(after.variants)
     for name in dict.fromkeys([*before.truth, *after.truth]):
         old, new = (str(one.truth.get(name, "as usual")) for one in (before, after))
-        yield f"truth world: {name}", old, new
+        yield f"ground-truth simulation: {name}", old, new
     for name in dict.fromkeys([*before.versions, *after.versions]):
         yield name, before.versions.get(name, "–"), after.versions.get(name, "–")
 
 
 def _variant_pair(
-    before: Evaluation,
-    after: Evaluation,
-    old: str,
-    new: str,
-    common: list[str],
+    before: Evaluation, after: Evaluation, old: str, new: str, common: list[str]
 ) -> VariantPair:
     names = frozenset(common)
-    trials = (_by_name(before.of_variant(old)), _by_name(after.of_variant(new)))
-    figures = figures_of(before, old, names), figures_of(after, new, names)
+    known = [
+        [trial for trial in evaluation.of_variant(variant) if trial.name in names]
+        for evaluation, variant in ((before, old), (after, new))
+    ]
+    trials = [_by_name(found) for found in known]
     return VariantPair(
         old,
         new,
-        figures,
-        (_mean_seconds(before, old, names), _mean_seconds(after, new, names)),
+        (figures_of(before, old, names), figures_of(after, new, names)),
+        (_mean(trial.total_s for trial in known[0]), _mean(trial.total_s for trial in known[1])),
         tuple(
-            _object_pair(name, trials[0][name], trials[1][name], (figures[0].measure, figures[1].measure))
+            _object_pair(name, trials[0][name], trials[1][name])
             for name in common
             if name in trials[0] and name in trials[1]
         ),
     )
 
 
-def _object_pair(
-    name: str, old: list[Trial], new: list[Trial], measures: tuple[Measure, Measure]
-) -> ObjectPair:
+def _object_pair(name: str, old: list[Trial], new: list[Trial]) -> ObjectPair:
     return ObjectPair(
         name,
         new[0].label,
-        (_right(old), _right(new)),
+        (Figures.of(old, 0).accuracy, Figures.of(new, 0).accuracy),
         (_clean(old), _clean(new)),
-        (_score(old), _score(new)),
-        measures,
+        (
+            _mean(trial.score for trial in old if trial.score is not None),
+            _mean(trial.score for trial in new if trial.score is not None),
+        ),
     )
 
 
@@ -210,20 +211,10 @@ def _by_name(trials: Iterable[Trial]) -> dict[str, list[Trial]]:
     return found
 
 
-def _right(trials: list[Trial]) -> Share:
-    labelled = [trial for trial in trials if trial.label != "ambiguous"]
-    return Share(sum(bool(trial.is_right) for trial in labelled), len(labelled))
-
-
 def _clean(trials: list[Trial]) -> Share:
     """Of containers only: what is poured into something else is not meant to stay."""
     poured = [trial for trial in trials if trial.label == "container"]
     return Share(sum(trial.n_clean_pours for trial in poured), sum(trial.n_pours for trial in poured))
-
-
-def _score(trials: list[Trial]) -> float | None:
-    known = [trial.score for trial in trials if trial.score is not None]
-    return sum(known) / len(known) if known else None
 
 
 def _trend(pair: tuple[Share, Share]) -> int | None:
@@ -234,6 +225,6 @@ def _trend(pair: tuple[Share, Share]) -> int | None:
     return 1 if after > before else -1
 
 
-def _mean_seconds(evaluation: Evaluation, variant: str, names: frozenset[str]) -> float | None:
-    took = [trial.total_s for trial in evaluation.of_variant(variant) if trial.name in names]
-    return sum(took) / len(took) if took else None
+def _mean(values: Iterable[float]) -> float | None:
+    known = list(values)
+    return sum(known) / len(known) if known else None

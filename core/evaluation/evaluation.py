@@ -1,6 +1,6 @@
-"""An evaluation's folder: what was asked, every trial, and their pictures. Light: no physics here.
+"""An evaluation's folder: the request, every trial, and their pictures. Light: no physics here.
 
-evaluation.json              what was asked, and of which objects
+evaluation.json              the request, and its objects
 trials/NAME.SEED.VARIANT.json  one trial each, written as soon as it is done
 pictures/NAME.SEED.VARIANT.png
 """
@@ -16,7 +16,7 @@ from typing import Any
 
 from core.errors import SessionError
 from core.evaluation.labels import Label, LabelledObject
-from core.evaluation.trials import Trial
+from core.evaluation.trials import FIRST_WORLD, Trial
 from core.files import read_json, write_json
 
 EVALUATION_FILE, TRIALS_FOLDER, PICTURES_FOLDER = "evaluation.json", "trials", "pictures"
@@ -71,14 +71,15 @@ class Evaluation:
         source: "mesh" or "scan".
         seeds: each object is tried once with each.
         variants: names, in the tables' order.
-        n_pours: pours in the truth world for each object that is judged a container.
+        n_pours: pours for each object that is judged a container, in all ground-truth worlds.
         preset: what the parameters started from.
         parameters: all of them by dotted name, as plain JSON.
         versions: of the program and of what it computes with.
         seconds: wall-clock time of all runs together.
         workers: how many computed in the last run.
         trials: in the order of variants, objects, seeds.
-        truth: settings of the truth world that are not the usual ones, by name.
+        truth: settings of the ground-truth worlds that are not the usual ones, by name.
+        worlds: the ground-truth worlds, into which pours go in turn.
     """
 
     objects: tuple[EvaluatedObject, ...]
@@ -93,6 +94,7 @@ class Evaluation:
     workers: int = 1
     trials: tuple[Trial, ...] = ()
     truth: Mapping[str, Any] = field(default_factory=dict)
+    worlds: tuple[str, ...] = (FIRST_WORLD,)
 
     def of_variant(self, variant: str) -> tuple[Trial, ...]:
         """Return the trials of one variant."""
@@ -114,8 +116,8 @@ class Evaluation:
         table = read_json(folder / EVALUATION_FILE)
         try:
             table["objects"] = tuple(EvaluatedObject(**one) for one in table["objects"])
-            for name in ("seeds", "variants"):
-                table[name] = tuple(table[name])
+            for name in ("seeds", "variants", "worlds"):
+                table[name] = tuple(table.get(name, (FIRST_WORLD,)))
             known = cls(**table)
         except (KeyError, TypeError) as error:
             raise SessionError(
@@ -154,6 +156,6 @@ def read_trial(path: Path, key: str | None = None) -> Trial | None:
         return None
 
 
-def trial_key(facts: Mapping[str, Any]) -> str:
-    """Return a digest of what a trial depends on, given as plain JSON."""
+def digest_of(facts: Mapping[str, Any]) -> str:
+    """Return a digest of what a result depends on, given as plain JSON."""
     return hashlib.sha256(json.dumps(facts, sort_keys=True).encode()).hexdigest()[:16]

@@ -5,13 +5,17 @@ from __future__ import annotations
 from pathlib import Path
 from time import perf_counter
 
+from core.collision import CollisionModel
 from core.collision.build import read_collision_model
 from core.errors import Cancelled, PoursightError
 from core.evaluation.labels import LabelledObject
 from core.evaluation.verdicts import ObjectVerdict, measure_by, mesh_mark
-from core.imagination.imagine import imagine_containability
-from core.imagination.judging import capacity_share
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
+from core.imagination.judgement import capacity_share
+from core.imagination.results import Drop
 from core.parameters import Parameters
+from core.progress import Reporter
 from core.workers import RunHere, Task, WorkerReporter
 
 
@@ -31,9 +35,7 @@ def judge_object(one: LabelledObject, parameters: Parameters, file: Path) -> Non
     reporter = WorkerReporter()
     try:
         model = read_collision_model(one.mesh, parameters.collision, reporter)
-        found = imagine_containability(model, parameters)
-        if measure_by(parameters) == "Capacity share":
-            share = capacity_share(model, found, parameters, RunHere(), reporter)
+        found, share = drop_and_fill(model, parameters, reporter)
         n_drop, n_in = found.n_drop, found.n_in  # with the share or not at all: without it Omega would judge
     except Cancelled:
         raise
@@ -43,3 +45,19 @@ def judge_object(one: LabelledObject, parameters: Parameters, file: Path) -> Non
         problem = f"A fault of the program ended this ({type(error).__name__}: {error})."
     seconds = round(perf_counter() - began_s, 3)
     ObjectVerdict(one.name, mesh_mark(one.mesh), n_drop, n_in, seconds, problem, share).save(file)
+
+
+def drop_and_fill(
+    model: CollisionModel, parameters: Parameters, reporter: Reporter
+) -> tuple[Drop, float | None]:
+    """Let candies drop, and find the capacity share where that decides; in this process.
+
+    Raises:
+        StageError: the object is smaller than a candy.
+        Cancelled: somebody asked to stop.
+    """
+    context = ImaginationContext(parameters, RunHere(), reporter)
+    drop = imagine_drop(context, model)
+    if measure_by(parameters) == "Omega":
+        return drop, None
+    return drop, capacity_share(context, model, drop)

@@ -1,4 +1,4 @@
-"""Objects with labels: a folder of meshes beside a CSV that says which of them are containers."""
+"""Labelled objects: a folder of meshes beside a CSV that says which of them are containers (Sec. IV-B)."""
 
 from __future__ import annotations
 
@@ -9,13 +9,33 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from core.errors import InputError
-from core.evaluation.answers import Agreement, is_answer_table, majority
 
 Label = Literal["container", "non-container", "ambiguous"]
 LABELS: tuple[Label, ...] = get_args(Label)
 MESHES_FOLDER = "meshes"
+ANSWER_COLUMNS = ("object", "annotator", "contains", "pourable")
 _ENDINGS = (".obj", ".ply", ".stl", ".off", ".glb")
-_NO = ("", "0", "no", "false", "n")
+_YES, _NO = ("1", "yes", "true", "y"), ("0", "no", "false", "n")
+
+_Row = Mapping[str, str | None]
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """The answers of the people who were asked about one object.
+
+    Attributes:
+        n_container: said that it can hold candies and that they could pour them in.
+        n_asked: people.
+    """
+
+    n_container: int
+    n_asked: int
+
+    @property
+    def is_container(self) -> bool:
+        """More than half said so: 3 of 5 (Sec. IV-B)."""
+        return 2 * self.n_container > self.n_asked
 
 
 @dataclass(frozen=True)
@@ -24,7 +44,7 @@ class LabelledObject:
 
     Attributes:
         name: unique among the objects.
-        label: an ambiguous one counts in no accuracy.
+        label: an ambiguous object counts in no accuracy.
         mesh: its file, in metres.
         category: what it is, such as "mug"; may be empty.
         notes: more about it; may be empty.
@@ -66,14 +86,35 @@ def read_labels(folder: Path, labels: Path | None = None) -> tuple[LabelledObjec
         ) from error
     if not rows:
         raise InputError(f"The labels {path} name no object; give a row with id and label for each.")
-    if is_answer_table(rows[0]):
-        return _of_answers(folder, path, rows)
-    objects = tuple(_object(folder, path, row) for row in rows)
+    if all(column in rows[0] for column in ANSWER_COLUMNS):
+        return _from_answers(folder, path, rows)
+    objects = tuple(_object(folder, row, _text(row, "id"), _label(path, row)) for row in rows)
     names = [one.name for one in objects]
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:
         raise InputError(f"The labels {path} name the object '{twice}' twice; leave one of the rows out.")
     return objects
+
+
+def objects_to_fit(
+    objects: Sequence[LabelledObject], all_of_them: bool = False
+) -> tuple[LabelledObject, ...]:
+    """Return the objects to fit to: those marked for it, or all if none is marked or all are wanted.
+
+    Raises:
+        InputError: none of them is a container, or all are.
+    """
+    labelled = tuple(one for one in objects if one.label != "ambiguous")
+    marked = tuple(one for one in labelled if one.is_calibration)
+    chosen = labelled if all_of_them or not marked else marked
+    labels = {one.label for one in chosen}
+    if len(labels) < 2:
+        kind = " and ".join(sorted(labels)) or "nothing"
+        raise InputError(
+            f"Parameters are fitted to containers and other objects, but there is only {kind} among the "
+            f"{len(chosen)} objects; label both kinds."
+        )
+    return chosen
 
 
 def _only_csv(folder: Path) -> Path:
@@ -89,46 +130,71 @@ def _only_csv(folder: Path) -> Path:
     return (preferred or found)[0]
 
 
-def _object(folder: Path, path: Path, row: Mapping[str, str | None]) -> LabelledObject:
-    name, label = (row.get("id") or "").strip(), (row.get("label") or "").strip()
-    known = next((one for one in LABELS if one == label), None)
-    if not name or known is None:
+def _object(
+    folder: Path, row: _Row, name: str, label: Label, agreement: Agreement | None = None
+) -> LabelledObject:
+    return LabelledObject(
+        name,
+        label,
+        _mesh(folder, name),
+        _text(row, "category"),
+        _text(row, "notes"),
+        _is_marked(row, "restricted"),
+        _is_marked(row, "calib"),
+        agreement,
+    )
+
+
+def _label(path: Path, row: _Row) -> Label:
+    label = next((one for one in LABELS if one == _text(row, "label")), None)
+    if label is None or not _text(row, "id"):
         raise InputError(
             f"In {path}, the row {dict(row)} cannot be used: it needs an id, and a label that is one of "
             f"{', '.join(LABELS)}."
         )
-    return LabelledObject(
-        name,
-        known,
-        _mesh(folder, name),
-        (row.get("category") or "").strip(),
-        (row.get("notes") or "").strip(),
-        _is_marked(row, "restricted"),
-        _is_marked(row, "calib"),
-    )
+    return label
 
 
-def _of_answers(
-    folder: Path, path: Path, rows: Sequence[Mapping[str, str | None]]
-) -> tuple[LabelledObject, ...]:
-    marks = {(row.get("object") or "").strip(): row for row in reversed(rows)}
-    return tuple(
-        LabelledObject(
-            name,
-            "container" if agreement.is_container else "non-container",
-            _mesh(folder, name),
-            (marks[name].get("category") or "").strip(),
-            (marks[name].get("notes") or "").strip(),
-            _is_marked(marks[name], "restricted"),
-            _is_marked(marks[name], "calib"),
-            agreement,
+def _from_answers(folder: Path, path: Path, rows: Sequence[_Row]) -> tuple[LabelledObject, ...]:
+    """Sum up raw answers by object, in the order of the file; the first row of an object has its marks."""
+    votes: dict[str, dict[str, bool]] = {}
+    for row in rows:
+        name, annotator = _text(row, "object"), _text(row, "annotator")
+        answers = [_answer(path, row, column) for column in ("contains", "pourable")]
+        if not name or not annotator:
+            raise InputError(f"In {path}, the row {dict(row)} lacks the object or the annotator.")
+        if annotator in votes.setdefault(name, {}):
+            raise InputError(f"In {path}, '{annotator}' answers twice about '{name}'; leave one row out.")
+        votes[name][annotator] = all(answers)
+    first_rows = {_text(row, "object"): row for row in reversed(rows)}
+    objects = []
+    for name, by_annotator in votes.items():
+        agreement = Agreement(sum(by_annotator.values()), len(by_annotator))
+        if 2 * agreement.n_container == agreement.n_asked:
+            raise InputError(
+                f"In {path}, the {agreement.n_asked} answers about '{name}' are split evenly; ask one more "
+                "person, or give labels instead of answers."
+            )
+        label: Label = "container" if agreement.is_container else "non-container"
+        objects.append(_object(folder, first_rows[name], name, label, agreement))
+    return tuple(objects)
+
+
+def _answer(path: Path, row: _Row, column: str) -> bool:
+    text = _text(row, column).lower()
+    if text not in _YES + _NO:
+        raise InputError(
+            f"In {path}, '{text}' in the column {column} is no answer; write 1 or 0 (or yes or no)."
         )
-        for name, agreement in majority(path, rows).items()
-    )
+    return text in _YES
 
 
-def _is_marked(row: Mapping[str, str | None], column: str) -> bool:
-    return (row.get(column) or "").strip().lower() not in _NO
+def _text(row: _Row, column: str) -> str:
+    return (row.get(column) or "").strip()
+
+
+def _is_marked(row: _Row, column: str) -> bool:
+    return _text(row, column).lower() not in ("", *_NO)
 
 
 def _mesh(folder: Path, name: str) -> Path:

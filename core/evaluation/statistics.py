@@ -3,13 +3,64 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import sqrt
+from typing import TypeAlias
 
-from core.evaluation.evaluation import EvaluatedObject
-from core.evaluation.intervals import Interval, Share, auc_interval
+from core.evaluation.evaluation import EvaluatedObject, Evaluation
 from core.evaluation.trials import Measure, Trial, measure_of
+
+Interval: TypeAlias = tuple[float, float]
+_Z = 1.959963984540054
+"""Quantile of the normal distribution for 95 %."""
+_HALVINGS = 60
+
+
+@dataclass(frozen=True)
+class Share:
+    """So many of so many.
+
+    Attributes:
+        count: those that are meant.
+        n: all of them.
+    """
+
+    count: int
+    n: int
+
+    @property
+    def value(self) -> float | None:
+        """From 0 to 1; none of nothing."""
+        return self.count / self.n if self.n else None
+
+    @property
+    def interval(self) -> Interval | None:
+        """95 % score interval of Wilson (1927), which also holds for shares of 0 and 1; none of nothing."""
+        if not self.n:
+            return None
+        from scipy.stats import binomtest
+
+        found = binomtest(self.count, self.n).proportion_ci(method="wilson")
+        return float(found.low), float(found.high)
+
+
+def auc_interval(auc: float, n_containers: int, n_others: int) -> Interval:
+    """Return the 95 % interval of an AUC, in the manner of Wilson's: it has a width for an AUC of 1, too.
+
+    Method 5 of Newcombe (2006): the variance of Hanley and McNeil, taken at the bound that is sought.
+    """
+    pairs = n_containers * n_others
+    spare = (n_containers + n_others) / 2 - 1
+
+    def deviation(bound: float) -> float:
+        shape = (1 - bound) / (2 - bound) + bound / (1 + bound)
+        return _Z * sqrt(bound * (1 - bound) * (1 + spare * shape) / pairs)
+
+    low = _edge(lambda bound: auc - bound > deviation(bound), 0.0, auc)
+    high = _edge(lambda bound: bound - auc > deviation(bound), 1.0, auc)
+    return low, high
 
 
 @dataclass(frozen=True)
@@ -36,14 +87,19 @@ class Margin:
     Attributes:
         smallest_container: (score, name) of the container with the smallest; none without one.
         largest_other: (score, name) of the non-container with the largest; none without one.
-        threshold: of the score.
-        measure: what the score is.
     """
 
     smallest_container: tuple[float, str] | None
     largest_other: tuple[float, str] | None
-    threshold: float
-    measure: Measure
+
+    @classmethod
+    def of(cls, scores: Iterable[tuple[float, str, bool]]) -> Margin:
+        """Find the margin of (score, name, whether it is a container)."""
+        known = list(scores)
+        return cls(
+            min(((score, name) for score, name, is_container in known if is_container), default=None),
+            max(((score, name) for score, name, is_container in known if not is_container), default=None),
+        )
 
     @property
     def value(self) -> float | None:
@@ -65,7 +121,7 @@ class StageTime:
 
 @dataclass(frozen=True)
 class Figures:
-    """What the tables tell of some trials of one variant; ambiguous objects are in no figure.
+    """The figures of some trials of one variant; ambiguous objects are in none.
 
     Attributes:
         trials: of labelled objects.
@@ -125,19 +181,18 @@ class Figures:
     @cached_property
     def auc(self) -> float | None:
         """Area under the ROC curve, of the score, ties half; none without both labels."""
-        containers, others = self._scores
+        containers, others = self.scores
         if not containers or not others:
             return None
-        from scipy.stats import rankdata
+        from scipy.stats import mannwhitneyu
 
-        ranks = rankdata(containers + others)[: len(containers)]
-        n = len(containers)
-        return float((ranks.sum() - n * (n + 1) / 2) / (n * len(others)))
+        n_above = mannwhitneyu(containers, others, method="asymptotic").statistic
+        return float(n_above / (len(containers) * len(others)))
 
     @property
     def auc_interval(self) -> Interval | None:
         """95 % interval of the AUC."""
-        containers, others = self._scores
+        containers, others = self.scores
         return None if self.auc is None else auc_interval(self.auc, len(containers), len(others))
 
     @property
@@ -145,6 +200,16 @@ class Figures:
         """Pours without a spilled candy; a container that was not poured into failed in all of its pours."""
         counted = [_clean(trial, self.n_pours) for trial in self._container_trials]
         return Share(sum(one.count for one in counted), sum(one.n for one in counted))
+
+    def pours_in(self, world: str) -> Share:
+        """Pours into containers without a spilled candy, of those made in one ground-truth world."""
+        counts = [
+            count
+            for trial in self._container_trials
+            for one, count in zip(trial.worlds, trial.spilled, strict=True)
+            if one == world
+        ]
+        return Share(sum(count == 0 for count in counts), len(counts))
 
     @property
     def clean_objects(self) -> Share:
@@ -161,27 +226,27 @@ class Figures:
 
     @property
     def margin(self) -> Margin:
-        """The margin over all trials, with the threshold of the first that was judged."""
-        judged = [(trial.score, trial) for trial in self.trials if trial.score is not None]
-        known = [one for _, one in judged] or self.trials
-        return Margin(
-            min(((score, one.name) for score, one in judged if one.label == "container"), default=None),
-            max(((score, one.name) for score, one in judged if one.label != "container"), default=None),
-            known[0].threshold if known else 0.0,
-            self.measure,
-        )
+        """The margin over all trials."""
+        judged = ((one.score, one.name, one.label == "container") for one in self.trials)
+        return Margin.of((score, name, kind) for score, name, kind in judged if score is not None)
+
+    @property
+    def threshold(self) -> float:
+        """The threshold of the first trial that was judged."""
+        known = [one for one in self.trials if one.score is not None] or self.trials
+        return known[0].threshold if known else 0.0
 
     @property
     def roc(self) -> tuple[tuple[float, float], ...]:
         """The ROC curve: (share of others, share of containers) above every threshold, from (0, 0) on."""
-        containers, others = self._scores
+        containers, others = self.scores
         if not containers or not others:
             return ()
         steps = sorted({*containers, *others}, reverse=True)
         return ((0.0, 0.0), *((_at_least(others, step), _at_least(containers, step)) for step in steps))
 
     @cached_property
-    def _scores(self) -> tuple[list[float], list[float]]:
+    def scores(self) -> tuple[list[float], list[float]]:
         """The score of the containers, and of the others."""
         judged = [(trial.score, trial.label) for trial in self.trials if trial.score is not None]
         return (
@@ -192,6 +257,14 @@ class Figures:
     @property
     def _container_trials(self) -> tuple[Trial, ...]:
         return tuple(trial for trial in self.trials if trial.label == "container")
+
+
+def figures_of(evaluation: Evaluation, variant: str, names: frozenset[str] | None = None) -> Figures:
+    """Return the figures of a variant, of all objects or of those named."""
+    trials = evaluation.of_variant(variant)
+    named = (trial for trial in trials if names is None or trial.name in names)
+    # A set in which all failed is judged as the others of its variant are.
+    return replace(Figures.of(named, evaluation.n_pours), measure=measure_of(trials))
 
 
 def sets_of(objects: Sequence[EvaluatedObject]) -> dict[str, frozenset[str]]:
@@ -256,3 +329,14 @@ def _clean(trial: Trial, n_pours: int) -> Share:
 
 def _at_least(values: Sequence[float], threshold: float) -> float:
     return sum(value >= threshold for value in values) / len(values)
+
+
+def _edge(is_outside: Callable[[float], bool], outside: float, inside: float) -> float:
+    """Bisect between a bound that is too far out and the AUC itself."""
+    for _ in range(_HALVINGS):
+        middle = (outside + inside) / 2
+        if is_outside(middle):
+            outside = middle
+        else:
+            inside = middle
+    return inside

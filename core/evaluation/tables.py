@@ -1,58 +1,56 @@
-"""Tables I and II of the paper and the rows of the CSV files, as values."""
+"""Tables I and II of the paper, as rows and as text for a terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from textwrap import fill
 from typing import Any
 
 from core.evaluation.evaluation import Evaluation
-from core.evaluation.intervals import Interval, Share, auc_interval
-from core.evaluation.statistics import Figures, sets_of
-from core.evaluation.trials import Measure, Trial, measure_of, measure_word
+from core.evaluation.statistics import Figures, Interval, Share, auc_interval, figures_of, sets_of
+from core.evaluation.trials import Measure, measure_word
 from core.evaluation.variants import VARIANTS
 
-CSV_COLUMNS = (
-    *("id", "label", "omega", "predicted", "p_chosen", "poured", "spilled", "seconds"),
-    *("seed", "variant", "category", "restricted", "calibration"),
-    *("n_drop", "n_in", "measure", "threshold", "capacity_share", "capacity_candies", "capacity_ml"),
-    *("holds_rad", "choice_i", "choice_j", "clean_at_least", "n_tries", "problem"),
-)
+WIDTH = 100
+"""Of the text, in characters."""
 INTERVALS_NOTE = (
     "In brackets 95 % intervals (Wilson; of the AUC: Newcombe). They take trials and pours as independent; "
     "those of one object are not, so with several seeds or pours the true intervals are wider."
 )
-
 MEASURES_NOTE = (
     "Capacity share: the volume that an imagined filling leaves in the object, as a share of its convex "
     "hull's. Omega: the share of the candies dropped on it that stay."
 )
-
-
-def truth_sentence(truth: Mapping[str, Any]) -> str:
-    """Say which settings of the truth world (SI units) are not the usual ones."""
-    chosen = ", ".join(
-        f"{name} = {value:.4g}" if isinstance(value, float) else f"{name} = {value}"
-        for name, value in truth.items()
-    )
-    return f"The truth world was not the usual one: {chosen}."
+_PAPER = (
+    # variant, method, objects, containers, others, judged right, poured without a spill, Omega_thr
+    ("affordancenet", "AffordanceNet", "restricted", 23, 28, 51, 19, None),
+    ("affordancenet-3d", "AffordanceNet w/ 3D Scanning", "restricted", 23, 28, None, 21, None),
+    ("fixed-theta", "Imagination w/ fixed theta", "restricted", 23, 28, None, 23, None),
+    ("imagination", "Imagination", "restricted", 23, 28, 51, 23, 0.0),
+    ("fixed-theta", "Imagination w/ fixed theta", "full", 55, 75, None, 52, None),
+    ("imagination", "Imagination", "full", 55, 75, 125, 54, 0.0),
+)
 
 
 @dataclass(frozen=True)
-class ClassificationRow:
-    """A row of Table I.
+class TableRow:
+    """A method's row of a set of objects in both tables.
 
     Attributes:
         variant: its short name.
         method: in the paper's words.
         dataset: name of the set of objects.
         n_objects: labelled objects.
-        accuracy: trials judged right.
+        n_containers: labelled containers that pours were meant for.
+        accuracy: trials judged right; none where Table I has no such row.
         right_objects: objects judged right with every seed; none where that is not known.
         auc: from 0 to 1; none if there is only one label.
         auc_interval: 95 %.
         measure: what judges; none where it is neither.
         threshold: of the measure; none where there is no measure.
+        pours: pours without a spilled candy; of nothing where Table II has no such row.
+        clean_objects: containers of which no pour spilled a candy; none where that is not known.
         is_from_paper: whether it is the paper's own, on its own objects.
     """
 
@@ -60,12 +58,15 @@ class ClassificationRow:
     method: str
     dataset: str
     n_objects: int
-    accuracy: Share
+    n_containers: int
+    accuracy: Share | None
     right_objects: Share | None
     auc: float | None
     auc_interval: Interval | None
     measure: Measure | None
     threshold: float | None
+    pours: Share
+    clean_objects: Share | None
     is_from_paper: bool = False
 
     @property
@@ -75,28 +76,10 @@ class ClassificationRow:
             return ""
         return f"{measure_word(self.measure)} > {self.threshold:.4g}"
 
-
-@dataclass(frozen=True)
-class PouringRow:
-    """A row of Table II.
-
-    Attributes:
-        variant: its short name.
-        method: in the paper's words.
-        dataset: name of the set of objects.
-        n_objects: labelled containers.
-        pours: pours without a spilled candy.
-        clean_objects: containers of which no pour spilled a candy; none where that is not known.
-        is_from_paper: whether it is the paper's own, on its own objects.
-    """
-
-    variant: str
-    method: str
-    dataset: str
-    n_objects: int
-    pours: Share
-    clean_objects: Share | None
-    is_from_paper: bool = False
+    @property
+    def short_name(self) -> str:
+        """The variant's name for a terminal: the titles would leave no space for the figures."""
+        return f"{self.variant} (paper)" if self.is_from_paper else self.variant
 
 
 def title_of(variant: str) -> str:
@@ -104,123 +87,228 @@ def title_of(variant: str) -> str:
     return VARIANTS[variant].title if variant in VARIANTS else variant
 
 
-def figures_of(evaluation: Evaluation, variant: str, names: frozenset[str] | None = None) -> Figures:
-    """Return the figures of a variant, of all objects or of those named."""
-    trials = evaluation.of_variant(variant)
-    named = (trial for trial in trials if names is None or trial.name in names)
-    # A set in which all failed is judged as the others of its variant are.
-    return replace(Figures.of(named, evaluation.n_pours), measure=measure_of(trials))
-
-
-def classification_rows(evaluation: Evaluation) -> list[ClassificationRow]:
-    """Return Table I: set by set, in each all variants."""
+def table_rows(evaluation: Evaluation) -> list[TableRow]:
+    """Return the rows of both tables, set by set, in each all variants."""
     return [
-        ClassificationRow(
-            variant,
-            title_of(variant),
-            name,
-            len(found.names),
-            found.accuracy,
-            found.right_objects,
-            found.auc,
-            found.auc_interval,
-            found.measure,
-            found.margin.threshold,
-        )
-        for name, variant, found in _figures_by_set(evaluation)
+        _row(variant, name, figures_of(evaluation, variant, members))
+        for name, members in sets_of(evaluation.objects).items()
+        for variant in evaluation.variants
     ]
 
 
-def pouring_rows(evaluation: Evaluation) -> list[PouringRow]:
-    """Return Table II: set by set, in each all variants; a set without containers has none."""
+def paper_rows() -> list[TableRow]:
+    """Return the paper's own rows, with the intervals that its numbers of objects give."""
     return [
-        PouringRow(
-            variant,
-            title_of(variant),
-            name,
-            found.clean_objects.n,
-            found.pours,
-            found.clean_objects,
-        )
-        for name, variant, found in _figures_by_set(evaluation)
-        if found.pours.n
-    ]
-
-
-def paper_classification() -> list[ClassificationRow]:
-    """Return the paper's Table I, with the intervals that its numbers of objects give."""
-    return [
-        ClassificationRow(
+        TableRow(
             variant,
             method,
             dataset,
             n_containers + n_others,
-            Share(n_right, n_containers + n_others),
+            n_containers,
+            None if n_right is None else Share(n_right, n_containers + n_others),
             None,
             1.0,
             auc_interval(1.0, n_containers, n_others),
             None if threshold is None else "Omega",
             threshold,
+            Share(n_clean, n_containers),
+            None,
             is_from_paper=True,
         )
-        for variant, method, dataset, n_containers, n_others, n_right, threshold in (
-            ("affordancenet", "AffordanceNet", "restricted", 23, 28, 51, None),
-            ("imagination", "Imagination", "restricted", 23, 28, 51, 0.0),
-            ("imagination", "Imagination", "full", 55, 75, 125, 0.0),
-        )
+        for variant, method, dataset, n_containers, n_others, n_right, n_clean, threshold in _PAPER
     ]
 
 
-def paper_pouring() -> list[PouringRow]:
-    """Return the paper's Table II: one pour for each container."""
+def classification(rows: Sequence[TableRow]) -> list[TableRow]:
+    """Return the rows of Table I."""
+    return [row for row in rows if row.accuracy is not None]
+
+
+def pouring(rows: Sequence[TableRow]) -> list[TableRow]:
+    """Return the rows of Table II; a set without containers has none."""
+    return [row for row in rows if row.pours.n]
+
+
+def text_tables(evaluation: Evaluation) -> str:
+    """Return Tables I and II, the margin of each seed, and what failed, at most `WIDTH` characters wide."""
+    rows = [row for row in [*table_rows(evaluation), *paper_rows()] if row.variant in VARIANTS]
+    parts = [
+        "Table I: open container classification, in %",
+        text_table(
+            ("variant", "objects", "n", "trials", "accuracy", "AUC", "threshold"),
+            [_classification_cells(row, row.accuracy) for row in rows if row.accuracy is not None],
+            n_words=2,
+        ),
+        *(fill(line, WIDTH, subsequent_indent="  ") for line in _measure_lines(evaluation)),
+        "",
+        "Table II: pours without a spilled candy, in %",
+        text_table(
+            ("variant", "objects", "n", "pours", "success", "objects w/o any spill"),
+            [_pouring_cells(row) for row in pouring(rows)],
+            n_words=2,
+        ),
+        "",
+        *_world_lines(evaluation),
+        *([fill(truth_sentence(evaluation.truth), WIDTH)] if evaluation.truth else []),
+        fill(INTERVALS_NOTE, WIDTH),
+        fill(MEASURES_NOTE, WIDTH),
+        "",
+        *_margin_lines(evaluation),
+        *_failure_lines(evaluation),
+    ]
+    return "\n".join(parts).rstrip() + "\n"
+
+
+def text_table(header: Sequence[str], rows: Sequence[Sequence[str]], n_words: int) -> str:
+    """Return a table with aligned columns: `n_words` of words to the left, then figures to the right."""
+    widths = [max(len(row[k]) for row in (header, *rows)) for k in range(len(header))]
+    lines = []
+    for row in (header, ["-" * width for width in widths], *rows):
+        cells = [
+            cell.ljust(width) if k < n_words else cell.rjust(width)
+            for k, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        lines.append("  ".join(cells).rstrip())
+    return "\n".join(lines)
+
+
+def percent(share: float | None) -> str:
+    """Return a share in per cent with two decimals, as the paper gives them."""
+    return "–" if share is None else f"{100 * share:.2f}"
+
+
+def interval_text(interval: Interval | None) -> str:
+    """Return an interval in per cent, such as '(87.4–99.6)'; empty if there is none."""
+    return "" if interval is None else f"({100 * interval[0]:.1f}–{100 * interval[1]:.1f})"
+
+
+def with_interval(share: float | None, interval: Interval | None) -> str:
+    """Return a share in per cent with its interval."""
+    return f"{percent(share)} {interval_text(interval)}".rstrip()
+
+
+def signed(value: float, decimals: int) -> str:
+    """Return a number with its sign, and a true minus."""
+    return f"{value:+.{decimals}f}".replace("-", "−")
+
+
+def margin_sentence(found: Figures) -> str:
+    """Say which container has the smallest score and which non-container the largest."""
+    margin, measure = found.margin, measure_word(found.measure)
+    low, high = margin.smallest_container, margin.largest_other
+    parts = [
+        f"smallest {measure} of a container {low[0]:.3f} ({low[1]})" if low else "no container was judged",
+        f"largest of a non-container {high[0]:.3f} ({high[1]})" if high else "no non-container was judged",
+        f"threshold {found.threshold:.4g}",
+    ]
+    if margin.value is not None:
+        parts.append(f"margin {signed(margin.value, 3)}")
+    return ", ".join(parts)
+
+
+def truth_sentence(truth: Mapping[str, Any]) -> str:
+    """Say which settings of the ground-truth simulation (SI units) are not the usual ones."""
+    chosen = ", ".join(
+        f"{name} = {value:.4g}" if isinstance(value, float) else f"{name} = {value}"
+        for name, value in truth.items()
+    )
+    return f"The ground-truth worlds did not have their usual settings: {chosen}."
+
+
+def _row(variant: str, dataset: str, found: Figures) -> TableRow:
+    return TableRow(
+        variant,
+        title_of(variant),
+        dataset,
+        len(found.names),
+        found.clean_objects.n,
+        found.accuracy,
+        found.right_objects,
+        found.auc,
+        found.auc_interval,
+        found.measure,
+        found.threshold,
+        found.pours,
+        found.clean_objects,
+    )
+
+
+def _classification_cells(row: TableRow, accuracy: Share) -> tuple[str, ...]:
+    return (
+        row.short_name,
+        row.dataset,
+        str(row.n_objects),
+        str(accuracy.n),
+        with_interval(accuracy.value, accuracy.interval),
+        with_interval(row.auc, row.auc_interval),
+        "–" if row.threshold is None else f"{row.threshold:.4g}",
+    )
+
+
+def _pouring_cells(row: TableRow) -> tuple[str, ...]:
+    pours, clean = row.pours, row.clean_objects
+    return (
+        row.short_name,
+        row.dataset,
+        str(row.n_containers),
+        str(pours.n),
+        with_interval(pours.value, pours.interval),
+        "" if clean is None else with_interval(clean.value, clean.interval),
+    )
+
+
+def world_rows(evaluation: Evaluation) -> list[tuple[str, str, Share]]:
+    """Return (method, ground-truth world, pours without a spilled candy) where there are several worlds."""
+    if len(evaluation.worlds) < 2:
+        return []
+    rows = [
+        (title_of(variant), world, figures_of(evaluation, variant).pours_in(world))
+        for variant in evaluation.variants
+        for world in evaluation.worlds
+    ]
+    return [row for row in rows if row[2].n]
+
+
+def _world_lines(evaluation: Evaluation) -> list[str]:
+    rows = [
+        (method, world, str(pours.n), with_interval(pours.value, pours.interval))
+        for method, world, pours in world_rows(evaluation)
+    ]
+    if not rows:
+        return []
     return [
-        PouringRow(variant, method, dataset, n, Share(count, n), None, is_from_paper=True)
-        for variant, method, dataset, count, n in (
-            ("affordancenet", "AffordanceNet", "restricted", 19, 23),
-            ("affordancenet-3d", "AffordanceNet w/ 3D Scanning", "restricted", 21, 23),
-            ("fixed-theta", "Imagination w/ fixed theta", "restricted", 23, 23),
-            ("imagination", "Imagination", "restricted", 23, 23),
-            ("fixed-theta", "Imagination w/ fixed theta", "full", 52, 55),
-            ("imagination", "Imagination", "full", 54, 55),
-        )
+        "The same pours by ground-truth world, in %",
+        text_table(("variant", "world", "pours", "success"), rows, n_words=2),
+        "",
     ]
 
 
-def csv_rows(evaluation: Evaluation, trials: Iterable[Trial]) -> Iterator[tuple[object, ...]]:
-    """Yield one row a trial, with `CSV_COLUMNS`."""
-    objects = {one.name: one for one in evaluation.objects}
-    for trial in trials:
-        i, j = trial.choice or ("", "")
-        yield (
-            trial.name,
-            trial.label,
-            _cell(trial.omega),
-            predicted(trial),
-            _cell(trial.p_chosen),
-            trial.n_pours,
-            sum(trial.spilled),
-            round(trial.total_s, 3),
-            trial.seed,
-            trial.variant,
-            objects[trial.name].category,
-            int(objects[trial.name].is_restricted),
-            int(objects[trial.name].is_calibration),
-            *(trial.n_drop, trial.n_in, "" if trial.score is None else trial.measure, trial.threshold),
-            *map(_cell, (trial.capacity_share, trial.capacity_candies, trial.capacity_ml, trial.holds_rad)),
-            *(i, j, _cell(trial.clean_at_least), trial.n_tries, trial.problem),
+def _measure_lines(evaluation: Evaluation) -> list[str]:
+    """Say which rows are judged by what."""
+    by_measure: dict[Measure, list[str]] = {}
+    for variant in evaluation.variants:
+        by_measure.setdefault(figures_of(evaluation, variant).measure, []).append(variant)
+    by_measure.setdefault("Omega", []).append("the paper's")
+    return [f"Judged by {measure_word(one)}: {', '.join(names)}." for one, names in by_measure.items()]
+
+
+def _margin_lines(evaluation: Evaluation) -> list[str]:
+    found = figures_of(evaluation, evaluation.variants[0])
+    return [
+        fill(f"Seed {seed}: {margin_sentence(found.of_seed(seed))}.", WIDTH, subsequent_indent="  ")
+        for seed in found.seeds
+    ]
+
+
+def _failure_lines(evaluation: Evaluation) -> list[str]:
+    lines = [
+        fill(
+            f"{one.name} (seed {one.seed}, {one.variant}): {one.problem}",
+            WIDTH,
+            initial_indent="  ",
+            subsequent_indent="    ",
         )
-
-
-def predicted(trial: Trial) -> str:
-    """Return what it was judged, in the words of the labels; empty if it failed."""
-    return {True: "container", False: "non-container", None: ""}[trial.is_judged_container]
-
-
-def _cell(value: float | None) -> float | str:
-    return "" if value is None else round(value, 6)
-
-
-def _figures_by_set(evaluation: Evaluation) -> Iterator[tuple[str, str, Figures]]:
-    for name, members in sets_of(evaluation.objects).items():
-        for variant in evaluation.variants:
-            yield name, variant, figures_of(evaluation, variant, members)
+        for one in evaluation.trials
+        if one.problem
+    ]
+    return ["", "Failed, and counted as not right or as spilled:", *lines] if lines else []

@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from core.evaluation.labels import Label
 
+FIRST_WORLD = "bullet"
+"""The ground-truth world of evaluations that had only one."""
 Measure = Literal["Capacity share", "Omega"]
 """What is held against the threshold."""
 
@@ -48,7 +50,7 @@ class Trial(Scored):
     Attributes:
         name: the object's.
         label: what a person calls it.
-        seed: of the scan's placing and noise, of the candies and of the truth world.
+        seed: of the scan's placing and noise, of the candies and of the ground-truth simulation.
         variant: a name of `core.evaluation.variants`.
         threshold: of what judged: a capacity share, or Omega_thr.
         n_drop: N_drop; 0 if it could not be judged.
@@ -60,13 +62,15 @@ class Trial(Scored):
         p_chosen: P of the chosen pour (Eq. 4); none if it is no container.
         clean_at_least: chance that it spills nothing, the lower 95 % bound; none without tries.
         n_tries: imagined pours in all, with and without errors; 0 without a risk.
+        n_feasible: how many of the imagined pours the arm can make; none without an arm.
         choice: (i, j) of the chosen pour.
         theta_rad: direction of the chosen pour, against the base frame's x-axis.
         n_pour: candies in the cup.
-        spilled: candies spilled, for each pour in the truth world; empty if there was none.
+        worlds: the ground-truth world of each pour.
+        spilled: candies spilled, for each pour; empty if there was none.
         in_cup: candies that stayed in the cup, for each pour.
         is_restricted: whether the object belongs to the restricted set (Sec. IV-B).
-        seconds: by stage; what several variants share is told by the first of them.
+        seconds: by stage; what several variants share is counted for the first of them.
         picture: name of the picture's file, or empty.
         problem: why it could not be judged, in a sentence; empty if it could.
     """
@@ -85,9 +89,11 @@ class Trial(Scored):
     p_chosen: float | None = None
     clean_at_least: float | None = None
     n_tries: int = 0
+    n_feasible: int | None = None
     choice: tuple[int, int] | None = None
     theta_rad: float | None = None
     n_pour: int = 0
+    worlds: tuple[str, ...] = ()
     spilled: tuple[int, ...] = ()
     in_cup: tuple[int, ...] = ()
     is_restricted: bool = False
@@ -101,6 +107,11 @@ class Trial(Scored):
         return None if self.score is None else self.score > self.threshold
 
     @property
+    def predicted(self) -> str:
+        """What it was judged, in the words of the labels; empty if it could not be judged."""
+        return {True: "container", False: "non-container", None: ""}[self.is_judged_container]
+
+    @property
     def is_right(self) -> bool | None:
         """Whether judgement and label agree; none for an ambiguous object. What failed is not right."""
         if self.label == "ambiguous":
@@ -109,7 +120,7 @@ class Trial(Scored):
 
     @property
     def n_pours(self) -> int:
-        """Pours made in the truth world."""
+        """Pours made in the ground-truth simulation."""
         return len(self.spilled)
 
     @property
@@ -136,15 +147,16 @@ class Trial(Scored):
         values = dict(table)
         choice = values.get("choice")
         values["choice"] = None if choice is None else (int(choice[0]), int(choice[1]))
-        values |= {name: tuple(values.get(name, ())) for name in ("spilled", "in_cup")}
+        values.setdefault("worlds", [FIRST_WORLD] * len(values.get("spilled", ())))
+        values |= {name: tuple(values.get(name, ())) for name in ("worlds", "spilled", "in_cup")}
         return cls(**values)
 
 
 def measure_of(trials: Iterable[Trial]) -> Measure:
-    """Return what judges the trials of one variant; those that failed have nothing to tell it by."""
+    """Return what judges the trials of one variant; those that failed do not show it."""
     return "Capacity share" if any(one.measure == "Capacity share" for one in trials) else "Omega"
 
 
 def measure_word(measure: Measure) -> str:
-    """Return a measure as it stands within a sentence."""
+    """Return a measure as it is written within a sentence."""
     return measure if measure == "Omega" else measure.lower()

@@ -2,40 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 from core.errors import InputError
-from core.parameters import Parameters, apply_settings
+from core.parameters import Parameters, apply_settings, load_preset
 from core.parameters.settings import nearest
 
 
 @dataclass(frozen=True)
 class Variant:
-    """A way to judge and pour.
+    """A method of judging and pouring.
 
     Attributes:
         name: on the command line.
         title: in the tables.
         changes: parameters that differ from those of the evaluation.
+        preset: whose parameters it has instead, but for the seed; none: the evaluation's.
+        has_arm: whether the cell's arm pours, of what it can make along its planned path; else a cup that
+            moves as imagined, wherever the best pour is.
     """
 
     name: str
     title: str
-    changes: Mapping[str, Any]
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    preset: str | None = None
+    has_arm: bool = True
 
     def of(self, parameters: Parameters) -> Parameters:
         """Return the variant's parameters."""
+        if self.preset is not None:
+            parameters = load_preset(self.preset).model_copy(update={"seed": parameters.seed})
         return apply_settings(parameters, dict(self.changes))
 
 
 METHOD = "imagination"
+DEFAULT = (METHOD, "ideal-arm", "paper", "authors")
+"""The rows of an evaluation that asks for none: the method, what its arm costs, and the paper's beside it."""
 VARIANTS: Mapping[str, Variant] = {
     one.name: one
     for one in (
-        Variant(METHOD, "Imagination", {}),
-        Variant("papers-choice", "Imagination, the paper's choice of the pour", {"risk.n_tries": 0}),
+        Variant(METHOD, "Imagination"),
+        Variant("ideal-arm", "Imagination, arm without limits", has_arm=False),
+        # Their cell is not ours, whose wrist camera would touch the object at pivots as low as theirs.
+        Variant(
+            "paper", "The paper's text (preset paper), arm without limits", preset="paper", has_arm=False
+        ),
+        Variant(
+            "authors",
+            "The released code (preset authors), arm without limits",
+            preset="authors",
+            has_arm=False,
+        ),
+        Variant("papers-choice", "Imagination, the pour chosen by P alone", {"risk.n_tries": 0}),
         Variant("fixed-theta", "Imagination w/ fixed theta", {"pouring.theta_fixed_rad": 0.0}),
         Variant("convex-parts", "Imagination on convex parts (V-HACD)", {"collision.method": "vhacd"}),
         Variant(
@@ -43,7 +63,7 @@ VARIANTS: Mapping[str, Variant] = {
             "Imagination w/o perturbation",
             {"containability.rotation_rad": 0.0, "containability.translation_m_s2": 0.0},
         ),
-        Variant("omega", "Imagination, Omega > Omega_thr (calibrated)", {"containability.verdict": "omega"}),
+        Variant("omega", "Imagination, Omega > Omega_thr (tuned)", {"containability.verdict": "omega"}),
         Variant(
             "threshold-0",
             "Imagination, Omega > 0",
@@ -53,8 +73,8 @@ VARIANTS: Mapping[str, Variant] = {
 }
 
 
-def variants_of(names: list[str]) -> tuple[Variant, ...]:
-    """Return variants by their names, in the tables' order; `all` stands for all of them.
+def variants_of(names: Sequence[str]) -> tuple[Variant, ...]:
+    """Return variants by their names, in the tables' order; `all` means all of them.
 
     Raises:
         InputError: there is no such variant.

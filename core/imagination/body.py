@@ -19,16 +19,20 @@ class BodyFile:
     is_concave: bool
 
 
+def write_body(path: Path, parts: Sequence[TriangleMesh], is_concave: bool) -> BodyFile:
+    """Write a body to an OBJ file and return what the workers need to read it."""
+    path.write_text(_obj_text(parts), encoding="ascii")
+    return BodyFile(str(path), is_concave)
+
+
 @contextmanager
 def body_files(**bodies: tuple[Sequence[TriangleMesh], bool]) -> Iterator[dict[str, BodyFile]]:
     """Write bodies given as `name=(parts, is_concave)` to a folder that lives as long as the context."""
     with tempfile.TemporaryDirectory(prefix="poursight-") as folder:
-        files = {}
-        for name, (parts, is_concave) in bodies.items():
-            path = Path(folder) / f"{name}.obj"
-            path.write_text(_obj_text(parts), encoding="ascii")
-            files[name] = BodyFile(str(path), is_concave)
-        yield files
+        yield {
+            name: write_body(Path(folder) / f"{name}.obj", parts, is_concave)
+            for name, (parts, is_concave) in bodies.items()
+        }
 
 
 def _obj_text(parts: Sequence[TriangleMesh]) -> str:

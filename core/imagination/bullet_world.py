@@ -7,28 +7,54 @@ taken out), bodies driven with their velocity, and finer steps only while a part
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
-from math import ceil, hypot
-from typing import Any
+from math import ceil, hypot, sqrt
 
 import numpy as np
 
 from core.errors import WorkerError
-from core.geometry import FloatArray, ellipsoid_inertia_kg_m2
+from core.geometry import FloatArray
 from core.imagination.body import BodyFile
 from core.imagination.engine import bullet
-from core.imagination.particle_shape import ellipsoid_hull_m, ellipsoid_skin_m
-from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
+from core.imagination.particle_shape import shape_of
+from core.parameters.bodies import ContactParameters, ParticleParameters, SolverParameters
 
 GRAVITY_M_S2 = 9.81
 CHECK_STEPS = 4
 """Steps between two looks at the particles for those that fell or are fast."""
+RESTING_M_S = 0.03
+"""Slower than that nothing leaves any more: the same counts as with 0.01 m/s, up to 1.6 times faster."""
 _REGION_MARGIN_M = 0.015
-_SAFE_MOVE_M = 0.0009
-"""Bullet sees a triangle from 1 mm away: a candy that moves on by more between two looks slips through it."""
-_SAFE_SHARE_OF_RADIUS = 0.5
-"""Of a ball, which a wall sees until its centre is through."""
 _DRIVEN_MASS_KG = 1e4
+
+
+@dataclass(frozen=True)
+class _Surfaces:
+    """What each body gets so that every pair has the contact that was asked for.
+
+    Bullet multiplies the two bodies' sliding frictions and restitutions. Its friction against rolling and
+    spinning is each body's value times the other's sliding friction, added up: here only candies have one.
+    """
+
+    candy_friction: float
+    wall_friction: float
+    candy_spinning: float
+    candy_rolling: float
+    restitution: float
+
+    @classmethod
+    def of(cls, contact: ContactParameters) -> _Surfaces:
+        candy = sqrt(contact.candy_friction)
+        wall = contact.lateral_friction / candy
+        rolls = wall > 0
+        return cls(
+            candy,
+            wall,
+            contact.spinning_friction / wall if rolls else 0.0,
+            contact.rolling_friction / wall if rolls else 0.0,
+            sqrt(contact.restitution),
+        )
 
 
 @cache
@@ -57,10 +83,9 @@ class BulletWorld:
         """
         self._solver = solver
         self._particle = particle
-        self._contact = contact
+        self._surfaces = _Surfaces.of(contact)
         self._region_m = (region_m + np.array([[-_REGION_MARGIN_M], [_REGION_MARGIN_M]])).tolist()
-        self._skin_m = ellipsoid_skin_m(particle) if particle.shape == "ellipsoid" else 0.0
-        self._safe_m_s = self._safe_move_m() * solver.rate_hz
+        self._safe_m_s = shape_of(particle).safe_move_m(particle) * solver.rate_hz
         self._client = _server()
         self._substeps = 0
         self._steps = 0
@@ -76,7 +101,7 @@ class BulletWorld:
         )
         self.set_gravity(np.array([0.0, 0.0, -GRAVITY_M_S2]))
         self._shape = self._create_particle_shape()
-        self._skin = self._skin_settings()
+        self._dynamics = shape_of(particle).dynamics(particle)
         # Without a visual of its own Bullet makes one from the shape, which takes longer than all the rest.
         self._visual: int = bullet.createVisualShape(
             bullet.GEOM_BOX, halfExtents=[0.001] * 3, physicsClientId=self._client
@@ -93,17 +118,17 @@ class BulletWorld:
         self._gravity_m_s2 = acceleration_m_s2
         bullet.setGravity(*acceleration_m_s2.tolist(), physicsClientId=self._client)
 
-    def add_fixed_body(self, body: BodyFile, restitution: float) -> None:
+    def add_fixed_body(self, body: BodyFile) -> None:
         """Add a body that rests at the origin."""
-        self._add_body(body, restitution, 0.0)
+        self._add_body(body, 0.0)
 
-    def add_driven_body(self, body: BodyFile, restitution: float) -> int:
+    def add_driven_body(self, body: BodyFile) -> int:
         """Add a body that `drive` places before every step, and return its id.
 
         It is a very heavy dynamic body: for a static one Bullet ignores the velocity, so that a wall which
         moves against the particles neither carries nor stops them and they slip through.
         """
-        return self._add_body(body, restitution, _DRIVEN_MASS_KG)
+        return self._add_body(body, _DRIVEN_MASS_KG)
 
     def drive(
         self,
@@ -147,13 +172,13 @@ class BulletWorld:
         bullet.changeDynamics(
             body_id,
             -1,
-            lateralFriction=self._contact.lateral_friction,
-            spinningFriction=self._contact.spinning_friction,
-            rollingFriction=self._contact.rolling_friction,
-            restitution=self._contact.restitution,
+            lateralFriction=self._surfaces.candy_friction,
+            spinningFriction=self._surfaces.candy_spinning,
+            rollingFriction=self._surfaces.candy_rolling,
+            restitution=self._surfaces.restitution,
             activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
             physicsClientId=self._client,
-            **self._skin,
+            **self._dynamics,
         )
         if velocity is not None:
             bullet.resetBaseVelocity(
@@ -200,6 +225,10 @@ class BulletWorld:
         bullet.removeBody(self.particle_ids[index], physicsClientId=self._client)
         self.particle_ids[index] = None
 
+    def is_at_rest(self, below_m_s: float = RESTING_M_S) -> bool:
+        """Return whether all particles are slower than that."""
+        return self.top_speed_m_s() < below_m_s
+
     def top_speed_m_s(self) -> float:
         """Return the speed of the fastest particle."""
         ids = [body_id for body_id in self.particle_ids if body_id is not None]
@@ -220,14 +249,6 @@ class BulletWorld:
                 top_speed_m_s = max(top_speed_m_s, hypot(*velocity))
         self._set_substeps(min(ceil(top_speed_m_s / self._safe_m_s), self._solver.substeps))
 
-    def _safe_move_m(self) -> float:
-        """How far a particle may move in one computation without slipping through a wall (decision 0001)."""
-        if self._particle.shape == "sphere":
-            seen_m = _SAFE_SHARE_OF_RADIUS * self._particle.diameter_m / 2
-        else:
-            seen_m = self._skin_m  # a wall that is in the skin, and not yet in the hull, is still seen
-        return max(_SAFE_MOVE_M, seen_m)
-
     def _set_substeps(self, substeps: int) -> None:
         """Compute each step in `substeps` parts; Bullet counts 0 as one."""
         if substeps != self._substeps:
@@ -236,7 +257,7 @@ class BulletWorld:
                 numSubSteps=substeps if substeps > 1 else 0, physicsClientId=self._client
             )
 
-    def _add_body(self, body: BodyFile, restitution: float, mass_kg: float) -> int:
+    def _add_body(self, body: BodyFile, mass_kg: float) -> int:
         shape = bullet.createCollisionShape(
             bullet.GEOM_MESH,
             fileName=body.path,
@@ -246,12 +267,11 @@ class BulletWorld:
         body_id: int = bullet.createMultiBody(
             mass_kg, shape, self._visual, useMaximalCoordinates=1, physicsClientId=self._client
         )
-        # Bullet multiplies the two frictions of a contact: with 1 here the particle's own value counts.
         bullet.changeDynamics(
             body_id,
             -1,
-            restitution=restitution,
-            lateralFriction=1.0,
+            restitution=self._surfaces.restitution,
+            lateralFriction=self._surfaces.wall_friction,
             linearDamping=0,
             angularDamping=0,
             activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
@@ -260,30 +280,6 @@ class BulletWorld:
         return body_id
 
     def _create_particle_shape(self) -> int:
-        particle = self._particle
-        if particle.shape == "sphere":
-            arguments = {"shapeType": bullet.GEOM_SPHERE, "radius": particle.diameter_m / 2}
-        elif particle.shape == "cylinder":
-            arguments = {
-                "shapeType": bullet.GEOM_CYLINDER,
-                "radius": particle.diameter_m / 2,
-                "height": particle.height_m,
-            }
-        else:
-            skin_m = 2 * self._skin_m
-            hull = ellipsoid_hull_m(particle.diameter_m - skin_m, particle.height_m - skin_m)
-            arguments = {"shapeType": bullet.GEOM_MESH, "vertices": hull.tolist()}
+        arguments = shape_of(self._particle).collision(self._particle)
         shape: int = bullet.createCollisionShape(**arguments, physicsClientId=self._client)
         return shape
-
-    def _skin_settings(self) -> dict[str, Any]:
-        """What `changeDynamics` must be told of a particle that is a hull in a skin."""
-        if self._skin_m == 0:
-            return {}
-        particle = self._particle
-        inertia = ellipsoid_inertia_kg_m2(particle.mass_kg, particle.diameter_m, particle.height_m)
-        return {
-            "mass": self._particle.mass_kg,
-            "collisionMargin": self._skin_m,
-            "localInertiaDiagonal": inertia.tolist(),
-        }

@@ -6,9 +6,8 @@ import numpy as np
 
 from core.geometry import BoolArray
 from core.imagination.cup import cup_pose
-from core.imagination.results import PourChoice, PourGrid
-from core.imagination.risk.results import PourRisk
-from core.parameters.imagination import CupParameters
+from core.imagination.results import PourChoice, PourGrid, PourRisk
+from core.parameters.bodies import CupParameters
 
 
 def choose_pour(

@@ -14,7 +14,8 @@ import numpy as np
 
 from core.geometry import FloatArray, make_pose, rotation_y, rotation_z
 from core.mesh import TriangleMesh
-from core.parameters.imagination import CupParameters, PouringParameters
+from core.parameters.bodies import CupParameters
+from core.parameters.imagination import PouringParameters
 
 _STAVES = 24
 # Cup axes in E with l_cup level and the mouth towards p_E: x (to the pivot) is down, z (to the mouth) is -x.
@@ -27,8 +28,10 @@ def inner_radius_m(cup: CupParameters, height_m: Any) -> Any:
 
 
 def pivot_in_cup_m(cup: CupParameters) -> FloatArray:
-    """r'_pivot (3,) in the cup frame."""
-    return np.array([cup.mouth_radius_m - cup.wall_m, 0.0, cup.length_m])
+    """r'_pivot (3,) in the cup frame: the inner rim's lowest point, or one above it."""
+    rim = np.array([cup.mouth_radius_m - cup.wall_m, 0.0, cup.length_m])
+    pivot: FloatArray = rim + rotation_y(cup.slant_rad) @ np.array([-cup.pivot_lift_m, 0.0, 0.0])
+    return pivot
 
 
 def cup_pose(cup: CupParameters, pivot_m: FloatArray, theta_rad: float, gamma_rad: float) -> FloatArray:

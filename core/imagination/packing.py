@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from math import floor
 
@@ -12,14 +15,31 @@ from core.errors import StageError
 from core.geometry import FloatArray, IntArray, invert_pose, transform_points
 from core.imagination.body import BodyFile
 from core.imagination.bullet_world import BulletWorld
+from core.imagination.context import ImaginationContext
 from core.imagination.cup import cup_pose, inner_radius_m, pour_angle, pour_duration_s
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Recorder, Recording
 from core.imagination.rotations import quaternion_of
+from core.imagination.set_up import SetUp, as_planned
 from core.parameters import Parameters
+from core.parameters.part import part_of
 from core.workers import Task, report_fraction
 
+STAGE = "pouring"
 PACKING_WEIGHT = 4.0
+_CUP_READS = (
+    "seed",
+    "particle",
+    "solver",
+    "pouring.n_pour",
+    "pouring.gamma_0_rad",
+    "pouring.settle_s",
+    "pouring.turn_s",
+    "pouring.wait_s",
+    "pouring.cup",
+    "pouring.contact",
+    "evidence.record_interval_s",
+)
 _RELEASE_BELOW_M = 0.005
 _SLOT_PITCHES = (1.15, 1.02)
 """Distance of neighbours at the start, relative to the particle, so that none overlap even when jittered; the
@@ -47,6 +67,61 @@ class CupRun:
     recording: Recording
 
 
+class CupRuns:
+    """Runs of the cup alone, made when first asked for: they know no object, so objects can share them."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, int, float], CupRun] = {}
+
+    def of(self, context: ImaginationContext, set_ups: Sequence[SetUp]) -> list[CupRun]:
+        """Return the run of each set-up.
+
+        Raises:
+            StageError: the cup cannot hold N_pour.
+        """
+        settings = _settings_key(context.parameters)
+        missing = [one for one in set_ups if self._key(settings, one) not in self._known]
+        if missing:
+            tasks = [self._task(context, one) for one in missing]
+            for one, run in zip(missing, context.run(tasks, STAGE), strict=True):
+                self._known[self._key(settings, one)] = run
+        return [self._known[self._key(settings, one)] for one in set_ups]
+
+    def of_packings(self, context: ImaginationContext) -> list[CupRun]:
+        """Return the runs that the pours need: none if cup and object are simulated together."""
+        return self.of(context, _planned(context.parameters))
+
+    def prepare(self, context: ImaginationContext) -> None:
+        """Let the next imagination fill idle processors with the runs of `of_packings`."""
+        settings = _settings_key(context.parameters)
+
+        def keep(one: SetUp, run: CupRun) -> None:
+            self._known[self._key(settings, one)] = run
+
+        for one in _planned(context.parameters):
+            if self._key(settings, one) not in self._known:
+                context.spare.append((self._task(context, one), partial(keep, one)))
+
+    @staticmethod
+    def _key(settings: str, one: SetUp) -> tuple[str, int, float]:
+        return settings, one.packing, one.candy_scale
+
+    @staticmethod
+    def _task(context: ImaginationContext, one: SetUp) -> Task:
+        return packing_task(context.cup(), one.parameters(context.parameters), one.packing)
+
+
+def _planned(parameters: Parameters) -> list[SetUp]:
+    n_packings = parameters.pouring.n_packings if parameters.pouring.mode == "replay" else 0
+    return [as_planned(packing) for packing in range(n_packings)]
+
+
+def _settings_key(parameters: Parameters) -> str:
+    """What a run depends on, besides its set-up."""
+    part = part_of(parameters, _CUP_READS)
+    return json.dumps(part.model_dump(mode="json"), sort_keys=True)
+
+
 def packing_task(cup_body: BodyFile, parameters: Parameters, packing: int) -> Task:
     """Return the task whose result is the `CupRun` of one packing."""
     return Task(_run_cup, (cup_body, parameters, packing), PACKING_WEIGHT)
@@ -59,12 +134,7 @@ def pack_cup(parameters: Parameters, packing: int) -> FloatArray:
         StageError: the cup cannot hold N_pour candies.
     """
     n_pour = parameters.pouring.n_pour
-    pitch, slots = _widest(parameters)
-    if len(slots) < n_pour:
-        raise StageError(
-            f"The cup cannot hold {n_pour} candies: lying as it does before a pour it has room for "
-            f"{len(slots)}; lower pouring.n_pour or enlarge the cup (pouring.cup)."
-        )
+    pitch, slots = require_room(parameters)
     generator = np.random.default_rng([parameters.seed, 1, packing])
     # From the middle of the cup, as in the released code: the candies fall and come to rest as they may.
     from_middle = np.abs(slots[:, 0] - parameters.pouring.cup.length_m / 2)
@@ -73,6 +143,22 @@ def pack_cup(parameters: Parameters, packing: int) -> FloatArray:
     shift = 0.4 * (pitch - 1) * particle_extents_m(parameters.particle)
     packed: FloatArray = chosen + generator.uniform(-shift, shift, chosen.shape)
     return packed
+
+
+def require_room(parameters: Parameters) -> tuple[float, FloatArray]:
+    """Return the pitch and the places (n, 3) in the cup, of which there are at least N_pour.
+
+    Raises:
+        StageError: the cup cannot hold N_pour candies.
+    """
+    n_pour = parameters.pouring.n_pour
+    pitch, slots = _widest(parameters)
+    if len(slots) < n_pour:
+        raise StageError(
+            f"The cup cannot hold {n_pour} candies: lying as it does before a pour it has room for "
+            f"{len(slots)}; lower pouring.n_pour or enlarge the cup (pouring.cup)."
+        )
+    return pitch, slots
 
 
 def cup_holds(parameters: Parameters) -> bool:
@@ -96,7 +182,7 @@ def _slots(parameters: Parameters, slot_pitch: float) -> FloatArray:
     pitch = slot_pitch * extents
     reach = cup.length_m, 2 * cup.mouth_radius_m, 2 * cup.mouth_radius_m
     counts = [floor(length / step) for length, step in zip(reach, pitch, strict=True)]
-    middles = cup.length_m / 2, 0.0, cup.mouth_radius_m - cup.wall_m
+    middles = cup.length_m / 2, 0.0, cup.mouth_radius_m - cup.wall_m - cup.pivot_lift_m
     axes = [
         middle + step * (np.arange(count) - (count - 1) / 2)
         for middle, step, count in zip(middles, pitch, counts, strict=True)
@@ -163,7 +249,7 @@ class PouringCup:
         self._pivot_m = pivot_m
         self._theta_rad = theta_rad
         self._axis = np.array([np.sin(theta_rad), -np.cos(theta_rad), 0.0])
-        self._body_id = world.add_driven_body(body, parameters.pouring.contact.restitution)
+        self._body_id = world.add_driven_body(body)
 
     def move(self, time_s: float) -> FloatArray:
         """Place the cup as it is at `time_s` and return `T_world_cup`."""

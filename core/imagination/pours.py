@@ -1,4 +1,7 @@
-"""One imagined pour: the exits of a cup run replayed onto the object, or cup and object together."""
+"""Pouring imagination: 8 directions at 3 distances, each with several packings (Sec. III-B).
+
+The exits of a cup run are replayed onto the object, or cup and object are simulated together.
+"""
 
 from __future__ import annotations
 
@@ -6,19 +9,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.collision import CollisionModel
 from core.geometry import FloatArray, make_pose, rotation_z, transform_points
 from core.imagination.body import BodyFile
 from core.imagination.bullet_world import CHECK_STEPS, BulletWorld
-from core.imagination.containability import ObjectAtRest, inside_aabb
+from core.imagination.context import ImaginationContext
 from core.imagination.cup import pour_duration_s
-from core.imagination.packing import CupRun, PouringCup, pack_cup
+from core.imagination.object_at_rest import ObjectAtRest, inside_aabb
+from core.imagination.packing import STAGE, CupRun, CupRuns, PouringCup, pack_cup
 from core.imagination.recording import Recorder, Recording
+from core.imagination.results import Footprint, PourGrid
 from core.imagination.rotations import multiply_quaternions, quaternion_of, yaw_quaternion
 from core.parameters import Parameters
+from core.parameters.imagination import N_INDENT, N_THETA, PouringParameters
 from core.workers import Task, report_fraction
 
-_RESTING_M_S = 0.03
-"""Slower than that nothing leaves any more: the same counts as with 0.01 m/s, up to 1.6 times faster."""
 _REPORT_STEPS = 25
 
 
@@ -50,6 +55,61 @@ class PourOutcome:
     recording: Recording | None
 
 
+def imagine_pours(
+    context: ImaginationContext, model: CollisionModel, footprint: Footprint, runs: CupRuns
+) -> PourGrid:
+    """Imagine all pours into an object of which some candies stayed.
+
+    Raises:
+        StageError: the cup cannot hold N_pour.
+    """
+    parameters, target = context.parameters, context.target(model)
+    pouring = parameters.pouring
+    thetas = pour_directions_rad(footprint, pouring)
+    indents = indentations_m(target.aabb_m, pouring)
+    pivots = pivots_m(footprint.raised(pouring.pivot_height_m), thetas, indents)
+    cup_runs = runs.of_packings(context)
+    tasks = []
+    for i, theta in enumerate(thetas):
+        for j in range(N_INDENT):
+            pour = Pour(pivots[i, j], float(theta))
+            for packing in range(pouring.n_packings):
+                record = packing == 0
+                if pouring.mode == "full":
+                    tasks.append(full_task(target, context.cup(), packing, pour, parameters, record))
+                else:
+                    tasks.append(replay_task(target, cup_runs[packing], pour.T_world_E, parameters, record))
+    outcomes: list[PourOutcome] = context.run(tasks, STAGE)
+    shape = len(thetas), N_INDENT, pouring.n_packings
+    n_in = np.array([outcome.n_in for outcome in outcomes], dtype=np.int64).reshape(shape)
+    n_spilled = np.array([outcome.n_spilled for outcome in outcomes], dtype=np.int64).reshape(shape)
+    recordings = [outcome.recording for outcome in outcomes if outcome.recording is not None]
+    rows = tuple(tuple(recordings[i * N_INDENT : (i + 1) * N_INDENT]) for i in range(len(thetas)))
+    return PourGrid(pouring.n_pour, n_in, n_spilled, thetas, indents, pivots, rows)
+
+
+def pour_directions_rad(footprint: Footprint, pouring: PouringParameters) -> FloatArray:
+    """theta_pour(i) against the world's x-axis: i pi/4 from the principal axis, or the fixed one."""
+    if pouring.theta_fixed_rad is not None:
+        return np.array([pouring.theta_fixed_rad])
+    thetas: FloatArray = footprint.axis_rad + np.arange(N_THETA) * 2 * np.pi / N_THETA
+    return thetas
+
+
+def indentations_m(aabb_m: FloatArray, pouring: PouringParameters) -> FloatArray:
+    """L_idt(j) = L_0 + j Delta L, (3,)."""
+    diagonal = np.hypot(*(aabb_m[1] - aabb_m[0])[:2])
+    indents: FloatArray = pouring.indent_0_m + np.arange(N_INDENT) * pouring.indent_step_ratio * diagonal
+    return indents
+
+
+def pivots_m(plane_E: Footprint, thetas_rad: FloatArray, indents_m: FloatArray) -> FloatArray:
+    """r_pivot(i, j), (I, 3, 3): on rays from p_E, in the plane E, which is a raised footprint (Eq. 3)."""
+    rays = np.stack([np.cos(thetas_rad), np.sin(thetas_rad), np.zeros_like(thetas_rad)], axis=-1)
+    pivots: FloatArray = plane_E.center_m + rays[:, None, :] * indents_m[None, :, None]
+    return pivots
+
+
 def replay_task(
     target: ObjectAtRest, run: CupRun, T_world_E: FloatArray, parameters: Parameters, record: bool
 ) -> Task:
@@ -77,7 +137,7 @@ def _replay(
     with BulletWorld(
         parameters.solver, parameters.particle, parameters.pouring.contact, target.aabb_m
     ) as world:
-        world.add_fixed_body(target.body, parameters.pouring.contact.restitution)
+        world.add_fixed_body(target.body)
         first = run.release_steps[order[0]] if order else steps
         for step in range(first, steps):
             if step % _REPORT_STEPS == 0:
@@ -99,7 +159,7 @@ def _replay(
 
 
 def _is_over(world: BulletWorld, in_world: list[int], order: list[int]) -> bool:
-    return len(in_world) == len(order) and world.top_speed_m_s() < _RESTING_M_S
+    return len(in_world) == len(order) and world.is_at_rest()
 
 
 def _in_world(run: CupRun, T_world_E: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -160,7 +220,7 @@ def _pour_fully(
     reach = np.array([1.0, 1.0, 0.0]) * pouring.cup.length_m
     around = np.array([target.aabb_m[0] - reach, target.aabb_m[1] + pouring.cup.length_m])
     with BulletWorld(parameters.solver, parameters.particle, pouring.contact, around) as world:
-        world.add_fixed_body(target.body, pouring.contact.restitution)
+        world.add_fixed_body(target.body)
         cup = PouringCup(world, cup_body, parameters, pour.pivot_m, pour.theta_rad)
         for start in transform_points(pour.T_world_E, pack_cup(parameters, packing)):
             world.add_particle(np.array([*start, *yaw_quaternion(pour.theta_rad)]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import atan2, pi
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,18 @@ from core.geometry import AnyArray, BoolArray, FloatArray, IntArray
 from core.imagination.recording import Recording
 from core.imagination.verdict import Verdict
 
+DROP_FILE, POURS_FILE, RISK_FILE = "containability.json", "pours.json", "risk.json"
+NOT_TRIED = -1
+_DOUBT = 0.05
+"""Chance that the true share of clean pours is below the bound."""
+
 
 @dataclass(frozen=True)
 class Footprint:
-    """Where the candies fell from that stayed (Sec. III-A); origin and axes of the plane E (Sec. III-B).
+    """Where the candies fell from that stayed (Sec. III-A); below the plane E's origin (Sec. III-B).
 
     Attributes:
-        center_m: (3,) p_E and z_E.
+        center_m: (3,) p_E, at the height of the top of the object's AABB.
         axis_rad: angle of the principal axis of largest variance against x, in [-pi/2, pi/2).
         deviations_m: (2,) standard deviations along the principal axes, larger first.
     """
@@ -30,38 +35,37 @@ class Footprint:
     deviations_m: FloatArray
 
     @classmethod
-    def of(cls, positions_m: FloatArray, z_E_m: float) -> Footprint:
+    def of(cls, positions_m: FloatArray, top_m: float) -> Footprint:
         """Compute from the (n, 2) drop positions of the candies that stayed, n >= 1."""
         center = positions_m.mean(axis=0)
         variances, axes = np.linalg.eigh(np.cov(positions_m.T, bias=True))
         x, y = axes[:, 1]
         angle = (atan2(y, x) + pi / 2) % pi - pi / 2
         deviations = np.sqrt(np.clip(variances[::-1], 0, None))
-        return cls(np.array([*center, z_E_m]), angle, deviations)
+        return cls(np.array([*center, top_m]), angle, deviations)
+
+    def raised(self, height_m: float) -> Footprint:
+        """Return the same at a height above: with the pivots' height it is the plane E of the pours."""
+        return replace(self, center_m=self.center_m + np.array([0.0, 0.0, height_m]))
 
 
 @dataclass(frozen=True)
-class Containability:
-    """Result of open containability imagination (Sec. III-A).
+class Drop:
+    """Result of the drop (Sec. III-A), before anything is concluded from it.
 
     Attributes:
-        omega: Omega = n_in / n_drop.
-        omega_threshold: Omega_thr it is held against.
         drop_positions_m: (n_drop, 3) centres at the start.
         retained: (n_drop,) whether the candy was inside the object's AABB at the end.
         aabb_m: (2, 3) lower and upper corner of the object's AABB.
         footprint: None when nothing stayed.
         recording: the drop, to look at.
-        verdict: by what it holds; none if Omega decides.
     """
 
-    omega_threshold: float
     drop_positions_m: FloatArray
     retained: BoolArray
     aabb_m: FloatArray
     footprint: Footprint | None
     recording: Recording
-    verdict: Verdict | None = None
 
     @property
     def n_drop(self) -> int:
@@ -78,23 +82,15 @@ class Containability:
         """Omega (Eq. 1)."""
         return self.n_in / self.n_drop
 
-    @property
-    def is_open_container(self) -> bool:
-        """The verdict: by what the object holds, or by Omega."""
-        return self.exceeds_omega if self.verdict is None else self.verdict.is_container
-
-    @property
-    def exceeds_omega(self) -> bool:
-        """The paper's verdict: whether Omega exceeds its threshold."""
-        return self.omega > self.omega_threshold
+    def judged(self, omega_threshold: float, verdict: Verdict | None) -> Containability:
+        """Return the drop with the verdict on the object."""
+        return Containability(**vars(self), omega_threshold=omega_threshold, verdict=verdict)
 
     def save(self, folder: Path) -> None:
         """Write `containability.json` and `drop.npz`."""
         footprint = self.footprint
         table: dict[str, Any] = {
             "omega": self.omega,
-            "omega_threshold": self.omega_threshold,
-            "is_open_container": self.is_open_container,
             "n_drop": self.n_drop,
             "n_in": self.n_in,
             "aabb_m": self.aabb_m.tolist(),
@@ -105,9 +101,8 @@ class Containability:
                 "axis_rad": footprint.axis_rad,
                 "deviations_m": footprint.deviations_m.tolist(),
             },
-            "verdict": None if self.verdict is None else self.verdict.to_table(),
         }
-        write_json(folder / "containability.json", table)
+        write_json(folder / DROP_FILE, table)
         write_arrays(
             folder / "drop.npz",
             drop_positions_m=self.drop_positions_m,
@@ -116,22 +111,42 @@ class Containability:
         )
 
     @classmethod
-    def load(cls, folder: Path) -> Containability:
+    def load(cls, folder: Path) -> Drop:
         """Read what `save` wrote."""
-        table = read_json(folder / "containability.json")
+        table = read_json(folder / DROP_FILE)
         arrays = read_arrays(folder / "drop.npz")
-        found, verdict = table["footprint"], table.get("verdict")
-        return cls(
-            table["omega_threshold"],
-            arrays["drop_positions_m"],
-            arrays["retained"],
-            np.array(table["aabb_m"]),
-            None
-            if found is None
-            else Footprint(np.array(found["center_m"]), found["axis_rad"], np.array(found["deviations_m"])),
-            Recording.from_arrays(arrays),
-            None if verdict is None else Verdict.from_table(verdict),
+        found, aabb_m = table["footprint"], np.array(table["aabb_m"])
+        footprint = None
+        if found is not None:
+            # Earlier versions wrote the height of the plane E here, which is the pours' business.
+            center_m = np.array([*found["center_m"][:2], aabb_m[1, 2]])
+            footprint = Footprint(center_m, found["axis_rad"], np.array(found["deviations_m"]))
+        return Drop(
+            arrays["drop_positions_m"], arrays["retained"], aabb_m, footprint, Recording.from_arrays(arrays)
         )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Containability(Drop):
+    """Open containability (Sec. III-A): the drop, and what follows from it.
+
+    Attributes:
+        omega_threshold: Omega_thr that Omega is held against.
+        verdict: by what the object holds; none if Omega decides.
+    """
+
+    omega_threshold: float
+    verdict: Verdict | None = None
+
+    @property
+    def is_open_container(self) -> bool:
+        """The verdict: by what the object holds, or by Omega."""
+        return self.exceeds_omega if self.verdict is None else self.verdict.is_container
+
+    @property
+    def exceeds_omega(self) -> bool:
+        """The paper's verdict: whether Omega exceeds its threshold."""
+        return self.omega > self.omega_threshold
 
 
 @dataclass(frozen=True)
@@ -180,7 +195,7 @@ class PourGrid:
             "indent_m": self.indent_m.tolist(),
             "pivot_m": self.pivot_m.tolist(),
         }
-        write_json(folder / "pours.json", table)
+        write_json(folder / POURS_FILE, table)
         arrays: dict[str, AnyArray] = {}
         for i, row in enumerate(self.recordings):
             for j, recording in enumerate(row):
@@ -190,7 +205,7 @@ class PourGrid:
     @classmethod
     def load(cls, folder: Path) -> PourGrid:
         """Read what `save` wrote."""
-        table = read_json(folder / "pours.json")
+        table = read_json(folder / POURS_FILE)
         arrays = read_arrays(folder / "pours.npz")
         n_in = np.array(table["n_in"], dtype=np.int64)
         recordings = tuple(
@@ -209,10 +224,77 @@ class PourGrid:
         )
 
 
-def imagined_n_pour(folder: Path) -> int | None:
-    """Return the N_pour that the pours saved in `folder` were imagined with; none if there are none."""
-    path = folder / "pours.json"
-    return int(read_json(path)["n_pour"]) if path.is_file() else None
+@dataclass(frozen=True)
+class PourRisk:
+    """Tries of each pour: first those of the pouring imagination, without errors, then those with errors.
+
+    Attributes:
+        n_pour: N_pour.
+        spilled: (I, 3, T) candies that fell beside the object, `NOT_TRIED` where there was no such try.
+    """
+
+    n_pour: int
+    spilled: IntArray
+
+    @classmethod
+    def as_planned(cls, grid: PourGrid) -> PourRisk:
+        """Return what is known before any try with errors."""
+        return cls(grid.n_pour, grid.n_spilled)
+
+    @property
+    def n_tries(self) -> IntArray:
+        """(I, 3) how often each pour was tried."""
+        tries: IntArray = (self.spilled != NOT_TRIED).sum(axis=2)
+        return tries
+
+    @property
+    def n_clean(self) -> IntArray:
+        """(I, 3) tries in which nothing was spilled."""
+        clean: IntArray = (self.spilled == 0).sum(axis=2)
+        return clean
+
+    @property
+    def mean_spilled(self) -> FloatArray:
+        """(I, 3) spilled candies a try."""
+        mean: FloatArray = np.where(self.spilled == NOT_TRIED, 0, self.spilled).sum(axis=2) / self.n_tries
+        return mean
+
+    @property
+    def expected_clean(self) -> FloatArray:
+        """(I, 3) chance that the next try spills nothing, by Laplace's rule of succession."""
+        expected: FloatArray = (self.n_clean + 1) / (self.n_tries + 2)
+        return expected
+
+    @property
+    def clean_at_least(self) -> FloatArray:
+        """(I, 3) chance of spilling nothing: the lower 95 % bound, all chances being as likely beforehand."""
+        from scipy.special import betaincinv
+
+        bound: FloatArray = np.asarray(
+            betaincinv(self.n_clean + 1, self.n_tries - self.n_clean + 1, _DOUBT), dtype=np.float64
+        )
+        return bound
+
+    def to_table(self) -> dict[str, Any]:
+        """Return the table of the command-line contract."""
+        return {
+            "n_pour": self.n_pour,
+            "n_tries": self.n_tries.tolist(),
+            "n_clean": self.n_clean.tolist(),
+            "clean_at_least": self.clean_at_least.tolist(),
+            "mean_spilled": self.mean_spilled.tolist(),
+            "spilled": [[[int(n) for n in pour if n != NOT_TRIED] for pour in row] for row in self.spilled],
+        }
+
+    def save(self, folder: Path) -> None:
+        """Write `risk.json`."""
+        write_json(folder / RISK_FILE, self.to_table())
+
+    @classmethod
+    def load(cls, folder: Path) -> PourRisk:
+        """Read what `save` wrote."""
+        table = read_json(folder / RISK_FILE)
+        return cls(table["n_pour"], joined(table["spilled"]))
 
 
 @dataclass(frozen=True)
@@ -251,3 +333,13 @@ class PourChoice:
         T_world_cup[:3, :3] = table["r_init"]
         T_world_cup[:3, 3] = table["t_init_m"]
         return cls(table["i"], table["j"], table["theta_rad"], np.array(table["pivot_m"]), T_world_cup)
+
+
+def joined(tries: list[list[list[int]]]) -> IntArray:
+    """Return (I, 3, T) from the tries of each pour, of which some have more than others."""
+    longest = max(len(pour) for row in tries for pour in row)
+    spilled = np.full((len(tries), len(tries[0]), longest), NOT_TRIED, dtype=np.int64)
+    for i, row in enumerate(tries):
+        for j, pour in enumerate(row):
+            spilled[i, j, : len(pour)] = pour
+    return spilled

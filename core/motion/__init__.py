@@ -1,1 +1,1 @@
-"""Where the arm can go: its kinematics, its clearance, clear ways, and camera views within reach."""
+"""Where the arm can go: its kinematics, its clearance, clear paths, and the camera views it can reach."""

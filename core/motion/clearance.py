@@ -1,4 +1,4 @@
-"""How far the arm stays from what stands around it, and from itself."""
+"""Distances of the arm to its surroundings, and to itself."""
 
 from __future__ import annotations
 
@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry import FloatArray, IntArray, make_pose
-from core.motion.arm_models import ArmModel
-from core.motion.arm_shape import ArmShape, Capsule
+from core.geometry import FloatArray, IntArray, invert_pose, make_pose
+from core.motion.arm_models import ArmModel, ArmShape, Capsule
 from core.motion.distances import segment_box_distance, segment_segment_distance
 from core.motion.kinematics import link_poses
 
@@ -23,8 +22,8 @@ class Obstacle:
     """A box that the arm must not touch.
 
     Attributes:
-        name: as a person would call it.
-        T_base_box: (4, 4) pose of its middle.
+        name: as shown to the user.
+        T_base_box: (4, 4) pose of its center.
         size_m: (3,) its sides.
         exempt: names of the arm's parts that may touch it, such as the base on its table.
     """
@@ -46,7 +45,7 @@ def axis_aligned_obstacle(
 
 @dataclass(frozen=True)
 class Clearance:
-    """How near N configurations come to anything.
+    """The smallest distances of N configurations.
 
     Attributes:
         distance_m: (N,) the smallest distance; negative where something overlaps.
@@ -59,28 +58,35 @@ class Clearance:
     pair_names: tuple[tuple[str, str], ...]
 
     def nearest(self, k: int) -> tuple[str, str]:
-        """Names of the two that are nearest in configuration `k`."""
+        """Names of the nearest two in configuration `k`."""
         return self.pair_names[self.pair[k]]
 
 
 class MotionScene:
-    """An arm with its tools among obstacles: everything that a motion is checked against."""
+    """An arm with its tools among obstacles: everything that a motion is checked against.
+
+    Attributes:
+        arm: its kinematics.
+        shape: capsules (C) of the arm and its tools.
+        obstacles: boxes (B).
+        radii_m: (C,) of the capsules.
+        T_box_base: (B, 4, 4) the base in the boxes' frames.
+        half_sizes_m: (B, 3) of the boxes.
+    """
 
     def __init__(self, arm: ArmModel, shape: ArmShape, obstacles: Sequence[Obstacle]) -> None:
         self.arm = arm
         self.shape = shape
         self.obstacles = tuple(obstacles)
         capsules = shape.capsules
+        self.radii_m = np.array([capsule.radius_m for capsule in capsules])
+        self.T_box_base = np.array([invert_pose(box.T_base_box) for box in self.obstacles]).reshape(-1, 4, 4)
+        self.half_sizes_m = np.array([box.size_m for box in self.obstacles]).reshape(-1, 3) / 2
         self._links = np.array([capsule.link for capsule in capsules])
         self._ends_m = np.array([(capsule.start_m, capsule.end_m) for capsule in capsules])
-        self._radii_m = np.array([capsule.radius_m for capsule in capsules])
         self._reaches_m = np.linalg.norm(self._ends_m[:, 1] - self._ends_m[:, 0], axis=1) / 2
         self._self_pairs = np.array(shape.pairs, dtype=int).reshape(-1, 2)
         self._box_pairs = _box_pairs(capsules, self.obstacles)
-        self._T_box_base = np.array([np.linalg.inv(box.T_base_box) for box in self.obstacles]).reshape(
-            -1, 4, 4
-        )
-        self._half_sizes_m = np.array([box.size_m for box in self.obstacles]).reshape(-1, 3) / 2
         self._pair_names = tuple(
             [(capsules[i].name, capsules[j].name) for i, j in self._self_pairs]
             + [(capsules[i].name, self.obstacles[j].name) for i, j in self._box_pairs]
@@ -94,14 +100,18 @@ class MotionScene:
         pair = distances.argmin(axis=1)
         return Clearance(distances[np.arange(len(joints)), pair], pair, self._pair_names)
 
+    def capsule_ends(self, joints_rad: FloatArray) -> FloatArray:
+        """Return the ends (N, C, 2, 3) of the capsules' segments in the base frame, in metres."""
+        poses = link_poses(self.arm, joints_rad)[:, self._links]
+        return np.asarray(self._ends_m @ np.swapaxes(poses[..., :3, :3], -1, -2) + poses[..., None, :3, 3])
+
     def _distances(self, joints: FloatArray) -> FloatArray:
         """Distances (N, P) of all pairs: the smallest of each configuration is exact, the others may be too
         small.
 
-        Balls around the capsules tell which pairs can be the nearest one; only these are looked at closer.
+        Bounding spheres of the capsules exclude most pairs; exact distances are computed for the others.
         """
-        poses = link_poses(self.arm, joints)[:, self._links]
-        ends = self._ends_m @ np.swapaxes(poses[..., :3, :3], -1, -2) + poses[..., None, :3, 3]
+        ends = self.capsule_ends(joints)
         distances = self._lower_bounds(ends.mean(axis=-2))
         rows = np.arange(len(joints))
         first = distances.argmin(axis=1)
@@ -114,13 +124,13 @@ class MotionScene:
         return distances
 
     def _lower_bounds(self, middles: FloatArray) -> FloatArray:
-        """No pair (N, P) is nearer than this; for the capsules' middles (N, C, 3)."""
+        """Lower bounds (N, P) of the pairs' distances, for the capsules' centers (N, C, 3)."""
         (i, j), (c, b) = self._self_pairs.T, self._box_pairs.T
-        around = self._radii_m + self._reaches_m
+        around = self.radii_m + self._reaches_m
         between = middles[:, i] - middles[:, j]
-        T = self._T_box_base
+        T = self.T_box_base
         in_boxes = np.einsum("bij,ncj->ncbi", T[:, :3, :3], middles) + T[:, :3, 3]
-        outside = np.maximum(np.abs(in_boxes) - self._half_sizes_m, 0)[:, c, b]
+        outside = np.maximum(np.abs(in_boxes) - self.half_sizes_m, 0)[:, c, b]
         to_itself = np.linalg.norm(between, axis=-1) - around[i] - around[j]
         return np.concatenate([to_itself, np.linalg.norm(outside, axis=-1) - around[c]], axis=1)
 
@@ -132,12 +142,12 @@ class MotionScene:
         i, j = self._self_pairs[pairs[of_itself]].T
         a, b = ends[rows[of_itself], i], ends[rows[of_itself], j]
         between = segment_segment_distance(a[:, 0], a[:, 1], b[:, 0], b[:, 1])
-        distances[of_itself] = between - self._radii_m[i] - self._radii_m[j]
+        distances[of_itself] = between - self.radii_m[i] - self.radii_m[j]
         c, box = self._box_pairs[pairs[~of_itself] - n_self].T
-        T = self._T_box_base[box]
+        T = self.T_box_base[box]
         near = ends[rows[~of_itself], c] @ np.swapaxes(T[:, :3, :3], -1, -2) + T[:, None, :3, 3]
-        to_box = segment_box_distance(near[:, 0], near[:, 1], self._half_sizes_m[box])
-        distances[~of_itself] = to_box - self._radii_m[c]
+        to_box = segment_box_distance(near[:, 0], near[:, 1], self.half_sizes_m[box])
+        distances[~of_itself] = to_box - self.radii_m[c]
         return distances
 
 

@@ -4,8 +4,15 @@ One schema feeds the command line, the parameter editor and the documentation.
 """
 
 from core.parameters.model import Parameters
-from core.parameters.presets import PRESET_NAMES, load_preset
-from core.parameters.settings import FieldFacts, apply_settings, describe, difference, flatten
+from core.parameters.settings import (
+    PRESET_NAMES,
+    FieldFacts,
+    apply_settings,
+    describe,
+    difference,
+    flatten,
+    load_preset,
+)
 
 __all__ = [
     "PRESET_NAMES",

@@ -7,84 +7,13 @@ from typing import Literal
 
 from pydantic import model_validator
 
+from core.parameters.bodies import ContactParameters, CupParameters
 from core.parameters.fields import CODE, OURS, PAPER, Group, choice, quantity
 
 N_THETA = 8
 """Pour directions, theta_pour(i) = i pi/4 (Sec. III-B)."""
 N_INDENT = 3
 """Indentation distances L_idt(j) of each direction (Sec. III-B)."""
-
-
-class ParticleParameters(Group):
-    """The candy (Sec. IV-C)."""
-
-    shape: Literal["cylinder", "ellipsoid", "sphere"] = choice(
-        "ellipsoid",
-        "Implicit cylinder (what the released code's candy acts as), ellipsoid hull (the paper's) or sphere.",
-        source=f"{PAPER}, Sec. IV-C; {CODE}: cylinder",
-    )
-    diameter_m: float = quantity(
-        0.0132,
-        "Diameter across.",
-        unit="m",
-        source=f"plain M&M's; {CODE}: 0.007, with the collision margin",
-        low=0.001,
-        high=0.05,
-    )
-    height_m: float = quantity(
-        0.007,
-        "Thickness; a sphere has none of its own.",
-        unit="m",
-        source=f"plain M&M's; {CODE}: 0.0028, with the collision margin",
-        low=0.001,
-        high=0.05,
-    )
-    mass_kg: float = quantity(
-        0.0009, "Mass of one.", unit="kg", source=f"plain M&M's; {CODE}: 0.0003", low=1e-5, high=0.1
-    )
-
-
-class ContactParameters(Group):
-    """Coulomb friction and restitution of the candies against everything."""
-
-    lateral_friction: float = quantity(0.5, "Sliding friction.", unit="", source="Bullet", low=0, high=5)
-    spinning_friction: float = quantity(
-        0.0, "Friction against spinning about the contact normal.", unit="", source="Bullet", low=0, high=5
-    )
-    rolling_friction: float = quantity(
-        0.0, "Friction against rolling.", unit="", source="Bullet", low=0, high=5
-    )
-    restitution: float = quantity(
-        0.1, "Share of the normal speed kept.", unit="", source=f"{PAPER}, Sec. IV-C", low=0, high=1
-    )
-
-
-class SolverParameters(Group):
-    """How finely Bullet computes."""
-
-    rate_hz: int = quantity(
-        240, "Steps per second.", unit="Hz", source=f"{PAPER}, Sec. III-A", low=60, high=4000
-    )
-    substeps: int = quantity(
-        10,
-        "Most parts a step is computed in, so that no candy near the object moves on by more than 0.9 mm: "
-        "Bullet sees a triangle from 1 mm away.",
-        unit="",
-        source=OURS,
-        low=1,
-        high=32,
-    )
-    iterations: int = quantity(
-        20, "Iterations of the contact solver.", unit="", source=f"{OURS}; Bullet: 50", low=1, high=500
-    )
-    contact_breaking_m: float = quantity(
-        0.001,
-        "Distance at which a contact is forgotten.",
-        unit="m",
-        source=f"{OURS}; Bullet: 0.02",
-        low=0.0001,
-        high=0.05,
-    )
 
 
 class ContainabilityParameters(Group):
@@ -94,6 +23,11 @@ class ContainabilityParameters(Group):
         289, "N_max: more candies than this are thinned out.", unit="", source=CODE, low=1, high=5000
     )
     n_min: int = quantity(64, "N_min: fewer get further layers.", unit="", source=CODE, low=1, high=5000)
+    layers: Literal["as_needed", "one_more"] = choice(
+        "as_needed",
+        "Layers where there are too few candies: N_min / (N_x N_y) rounded up, or rounded down and one more.",
+        source=f"{PAPER}, Sec. III-A; {CODE}: one_more",
+    )
     layer_height_m: float = quantity(
         0.01,
         "Lowest layer above the object's AABB.",
@@ -114,7 +48,12 @@ class ContainabilityParameters(Group):
         high=0.02,
     )
     jitter_m: float = quantity(
-        0.0005, "Random shift of each candy, uniform, each way.", unit="m", source=OURS, low=0, high=0.01
+        0.0005,
+        "Random shift of each candy, uniform, each way.",
+        unit="m",
+        source=f"{OURS}; {PAPER}: none",
+        low=0,
+        high=0.01,
     )
     drop_s: float = quantity(150 / 240, "Time to fall and settle.", unit="s", source=CODE, low=0, high=20)
     rotation_s: float = quantity(
@@ -161,14 +100,18 @@ class ContainabilityParameters(Group):
     )
     omega_threshold: float = quantity(
         0.13,
-        "Omega_thr: above it the object is an open container by the paper's rule.",
+        "Omega_thr: above it the object is an open container by Omega.",
         unit="",
         source=f"{OURS}: docs/decisions/0013; {PAPER}, Sec. IV-C: 0",
         low=0,
         high=1,
     )
     contact: ContactParameters = ContactParameters(
-        lateral_friction=0.2, spinning_friction=0.02, rolling_friction=0.02, restitution=0.1
+        lateral_friction=0.2,
+        candy_friction=0.04,
+        spinning_friction=0.02,
+        rolling_friction=0.02,
+        restitution=0.01,
     )
 
     @model_validator(mode="after")
@@ -186,36 +129,6 @@ class ContainabilityParameters(Group):
     def deciding_threshold(self) -> float:
         """The threshold that the verdict needs."""
         return self.omega_threshold if self.verdict == "omega" else self.capacity_threshold
-
-
-class CupParameters(Group):
-    """The cup: a truncated cone, open at its wide end (Sec. III-B)."""
-
-    length_m: float = quantity(
-        0.111, "From base to mouth, outside.", unit="m", source=CODE, low=0.02, high=0.4
-    )
-    mouth_radius_m: float = quantity(
-        0.0333, "Outer radius of the mouth.", unit="m", source=CODE, low=0.01, high=0.2
-    )
-    slant_rad: float = quantity(
-        0.028575, "Slant of the inner wall against the axis.", unit="rad", source=CODE, low=0, high=0.5
-    )
-    wall_m: float = quantity(
-        0.002, "Thickness of wall and base.", unit="m", source=CODE, low=0.0005, high=0.02
-    )
-
-    @model_validator(mode="after")
-    def _base_is_open(self) -> CupParameters:
-        if self.base_inner_radius_m <= 0.002:
-            raise ValueError("the cup narrows to a point: shorten length_m or lessen slant_rad")
-        return self
-
-    @property
-    def base_inner_radius_m(self) -> float:
-        """Inner radius where the wall meets the base."""
-        from math import tan
-
-        return self.mouth_radius_m - self.wall_m - (self.length_m - self.wall_m) * tan(self.slant_rad)
 
 
 class PouringParameters(Group):
@@ -288,7 +201,11 @@ class PouringParameters(Group):
     )
     cup: CupParameters = CupParameters()
     contact: ContactParameters = ContactParameters(
-        lateral_friction=0.4, spinning_friction=0.005, rolling_friction=0.005, restitution=0.5
+        lateral_friction=0.4,
+        candy_friction=0.16,
+        spinning_friction=0.005,
+        rolling_friction=0.005,
+        restitution=0.25,
     )
 
 
@@ -300,3 +217,84 @@ class EvidenceParameters(Group):
     )
     renders: bool = choice(True, "Render stills of the drop and of the 24 pours.", source=OURS)
     films: bool = choice(True, "Render films of the drop and of the chosen pour.", source=OURS)
+
+
+class CapacityParameters(Group):
+    """Filling the object until candies run over."""
+
+    n_fillings: int = quantity(
+        2, "Independent fillings, of which the mean is taken.", unit="", source=OURS, low=1, high=20
+    )
+    n_aimed: int = quantity(
+        64,
+        "Balls that a filling aims at: what holds more is filled with larger ones.",
+        unit="",
+        source=OURS,
+        low=20,
+        high=5000,
+    )
+    n_real: int = quantity(
+        30,
+        "Up to so many expected candies it is filled with candies; with balls of their volume above.",
+        unit="",
+        source=OURS,
+        low=0,
+        high=5000,
+    )
+    widths_in_mouth: float = quantity(
+        2.5,
+        "Larger candies are at most as large that so many lie side by side in the mouth.",
+        unit="",
+        source=OURS,
+        low=1,
+        high=20,
+    )
+    rain_m_s: float = quantity(
+        0.4, "Speed of the candies where they are let go.", unit="m/s", source=OURS, low=0.05, high=2
+    )
+    lattice_points: int = quantity(
+        500_000,
+        "Points of the lattice on which the geometric volume is found.",
+        unit="",
+        source=OURS,
+        low=10_000,
+        high=50_000_000,
+    )
+
+
+N_TILT_DIRECTIONS = 8
+"""Directions of tilt, i pi/4 from the footprint's principal axis, as those of the pours (Sec. III-B)."""
+
+
+class RetentionParameters(Group):
+    """Tilting the object until the candies leave."""
+
+    n_load: int = quantity(
+        24,
+        "Candies poured onto the footprint before the tilt; what of them comes to rest inside is the load.",
+        unit="",
+        source=f"{OURS}: less than N_pour = 60, so that small objects have room for them; not in the paper",
+        low=1,
+        high=1000,
+    )
+    layer_spacing_m: float = quantity(
+        0.01, "Distance of the layers they fall in.", unit="m", source=OURS, low=0.001, high=0.5
+    )
+    settle_s: float = quantity(1.5, "Longest time to come to rest.", unit="s", source=OURS, low=0.1, high=20)
+    tilt_step_rad: float = quantity(
+        radians(3), "Step of the tilt.", unit="rad", source=OURS, low=radians(0.5), high=radians(15)
+    )
+    tilt_max_rad: float = quantity(
+        pi / 2, "Largest tilt.", unit="rad", source=OURS, low=radians(5), high=pi / 2
+    )
+    hold_s: float = quantity(
+        0.25,
+        "Longest time at each step; it ends as soon as the candies rest.",
+        unit="s",
+        source=OURS,
+        low=0.05,
+        high=10,
+    )
+    rest_m_s: float = quantity(
+        0.05, "Candies slower than that rest.", unit="m/s", source=OURS, low=0.001, high=0.5
+    )

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from core.parameters.capacity import CapacityParameters
+from core.parameters.bodies import ParticleParameters, SolverParameters
 from core.parameters.fields import OURS, Group, quantity
-from core.parameters.holding import HoldingParameters
 from core.parameters.imagination import (
+    CapacityParameters,
     ContainabilityParameters,
     EvidenceParameters,
-    ParticleParameters,
     PouringParameters,
-    SolverParameters,
+    RetentionParameters,
 )
 from core.parameters.reconstruction import CollisionParameters, ReconstructionParameters
 from core.parameters.risk import RiskParameters
@@ -27,6 +26,6 @@ class Parameters(Group):
     containability: ContainabilityParameters = ContainabilityParameters()
     pouring: PouringParameters = PouringParameters()
     capacity: CapacityParameters = CapacityParameters()
-    holding: HoldingParameters = HoldingParameters()
+    holding: RetentionParameters = RetentionParameters()
     risk: RiskParameters = RiskParameters()
     evidence: EvidenceParameters = EvidenceParameters()

@@ -12,7 +12,7 @@ from core.quality.measures import ScanQuality
 from core.quality.verdict import assess
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
-from core.scan import crop_box_of, read_scan
+from core.scan import crop_box_of, stored_scan
 from core.workers import WorkerReporter
 
 
@@ -21,7 +21,7 @@ def reconstruction_job(
 ) -> tuple[Reconstruction, list[str]]:
     """Reconstruct a scan; return the result and what the user should know."""
     reporter = WorkerReporter()
-    scan = read_scan(scan_folder, WorkerReporter())  # its warnings were given when it was imported
+    scan = stored_scan(scan_folder, WorkerReporter())  # its warnings were given when it was imported
     return reconstruct(scan, parameters, reporter), reporter.warnings
 
 
@@ -32,7 +32,7 @@ def quality_job(
     table_height_m: float | None,
 ) -> tuple[ScanQuality, list[str]]:
     """Judge a scan by itself and by what was reconstructed from it."""
-    scan = read_scan(scan_folder, WorkerReporter())
+    scan = stored_scan(scan_folder, WorkerReporter())
     volume = coarse_volume(scan, crop_box_of(scan, parameters))
     reconstruction = Reconstruction.load(reconstruction_folder)
     return assess(scan, volume, reconstruction, table_height_m=table_height_m), []

@@ -1,22 +1,22 @@
-"""Gathering what a report tells from the session's files."""
+"""Gathering what a report shows from the session's files."""
 
 from __future__ import annotations
 
 import io
 from pathlib import Path
 
-from core.imagination.imagine import Imagination
+from core.imagination.imagination import Imagination
 from core.imagination.rendering.evidence import Evidence
 from core.mesh import TriangleMesh
-from core.motion.pour.choosing import PourMotions
+from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters
-from core.pipeline.needs import STAGES
 from core.quality.measures import ScanQuality
 from core.reconstruction.result import Reconstruction
 from core.report import Media, ReportContent
 from core.session import Session
 from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import pour_runs
+from core.stages import STAGE_NAMES
 
 _THUMBNAIL_PX = (240, 180)
 _CAPTIONS = {
@@ -47,7 +47,7 @@ def gather(
     """Put together everything the report shows."""
     named = {_CAPTIONS[name]: evidence.files[name] for name in _CAPTIONS if name in evidence.files}
     films = {_CAPTIONS[name] for name in evidence.files if name.endswith(".mp4")}
-    records = {stage: session.record(stage) for stage in STAGES}
+    records = {stage: session.record(stage) for stage in STAGE_NAMES}
     made = {stage: record for stage, record in records.items() if record is not None}
     return ReportContent(
         name=session.name,
@@ -61,7 +61,7 @@ def gather(
         quality=quality,
         pours=imagination.grid,
         capacity=imagination.capacity,
-        holding=imagination.holding,
+        retention=imagination.retention,
         amount=imagination.amount,
         choice=imagination.choice,
         risk=imagination.risk if motions is None or motions.risk is None else motions.risk,

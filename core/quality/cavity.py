@@ -1,7 +1,7 @@
 """The unseen inside of an opening, found in the fused volume without any model of the object.
 
-Where known free space ends at voxels that no view saw, the views could not look on. Around the object that is
-an ordinary shadow; within a closed ring of wall it is the inside of something that may hold.
+Where known free space ends at voxels that no view saw, the views could not look further. Around the object
+that is an ordinary shadow; within a closed ring of wall it is the inside of something that may hold candies.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from scipy.ndimage import binary_dilation, generate_binary_structure, label
 
 from core.geometry import BoolArray
-from core.quality.hidden_cavity import HiddenCavity
+from core.quality.measures import HiddenCavity
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
 
@@ -27,6 +27,9 @@ RIM_LAYERS = 4
 ALL_NEIGHBOURS = generate_binary_structure(3, 3)
 IN_LAYER = generate_binary_structure(3, 1) & np.array([False, True, False])
 """The four neighbours within a horizontal layer; the last axis is z."""
+
+_fused: list[tuple[Scan, CropBox, TsdfVolume]] = []
+"""What `coarse_volume` fused last."""
 
 
 @dataclass(frozen=True)
@@ -78,10 +81,17 @@ def fuse_coarsely(volume: TsdfVolume, frame: RgbdFrame, intrinsics: Intrinsics) 
 
 
 def coarse_volume(scan: Scan, box: CropBox) -> TsdfVolume:
-    """Fuse all views coarsely; 0.3 s."""
+    """Fuse all views coarsely, the same scan (see `stored_scan`) once per process; 0.3 s.
+
+    The volume is shared: do not fuse anything else into it.
+    """
+    for known_scan, known_box, volume in _fused:
+        if known_scan is scan and known_box == box:
+            return volume
     volume = empty_coarse_volume(box)
     for frame in scan.frames:
         fuse_coarsely(volume, frame, scan.intrinsics)
+    _fused[:] = [(scan, box, volume)]
     return volume
 
 

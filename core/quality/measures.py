@@ -1,4 +1,4 @@
-"""What is measured of a finished scan, in one record that saves and loads itself."""
+"""What is measured of a finished scan, in one record that saves and loads itself; light to import."""
 
 from __future__ import annotations
 
@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 from core.files import read_arrays, read_json, write_arrays, write_json
-from core.geometry import IntArray
-from core.quality.hidden_cavity import HiddenCavity
+from core.geometry import FloatArray, IntArray
 from core.quality.view_quality import ViewQuality
 
 FACTS_FILE = "quality.json"
@@ -21,7 +20,7 @@ _CAVITY_NUMBERS = ("area_m2", "volume_ml", "depth_m", "width_m")
 
 @dataclass(frozen=True)
 class ScanQuality:
-    """Everything that tells how good a scan is, and the verdict.
+    """How good a scan is, and the verdict.
 
     Attributes:
         views: each view, in the scan's order.
@@ -29,7 +28,7 @@ class ScanQuality:
         n_views: (V,) in how many views each vertex of the reconstructed mesh was seen.
         unseen_share: share of its surface, without what looks down, that no view saw.
         verdict: "good", "usable" or "scan again".
-        reasons: a plain sentence for each reason; the verdict itself is said in the first.
+        reasons: a plain sentence for each reason; the first begins with the verdict.
     """
 
     views: tuple[ViewQuality, ...]
@@ -85,9 +84,7 @@ class ScanQuality:
                 tuple(map(str, facts["reasons"])),
             )
         except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise SessionError(
-                f"{folder / FACTS_FILE} is damaged ({error!r}); assess the scan again."
-            ) from error
+            raise SessionError(f"{folder / FACTS_FILE} is damaged ({error!r}).", Remedy.RUN_AGAIN) from error
 
 
 def table_sd_m(views: tuple[ViewQuality, ...]) -> float | None:
@@ -100,3 +97,25 @@ def residual_m(views: tuple[ViewQuality, ...]) -> float | None:
     """Median over the views of the rms distance of depth to model; none if none shows the object."""
     residuals = [view.residual_rms_m for view in views if view.residual_rms_m is not None]
     return float(np.median(residuals)) if residuals else None
+
+
+@dataclass(frozen=True)
+class HiddenCavity:
+    """What no view saw inside the openings; all empty and zero when everything was seen.
+
+    Attributes:
+        frontier_m: (N, 3) voxel centres in the base frame, where known free space ends at the unseen.
+        region: (M, 3) voxels of the volume, the frontier and the unseen that lies enclosed behind it. It
+            includes the cores of walls and floors, which no view can see.
+        area_m2: of the frontier.
+        volume_ml: of the region, so the most that may be hidden.
+        depth_m: from the rim down to the middle of the frontier, in the opening with the most of it.
+        width_m: of that opening just below its rim, as the diameter of a circle of its area.
+    """
+
+    frontier_m: FloatArray
+    region: IntArray
+    area_m2: float = 0.0
+    volume_ml: float = 0.0
+    depth_m: float = 0.0
+    width_m: float = 0.0

@@ -3,7 +3,7 @@
 A structured-light camera measures a point that it sees, that its projector lights, that is not too near and
 not seen at a grazing angle. A pixel with a depth frees everything before it. So each pixel's ray is followed
 through what is free or unseen to what must stop it, a known wall or the platform; if that end could be
-measured, the unseen voxels on the way would be revealed.
+measured, the unseen voxels along it would be revealed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter
 
 from core.geometry import BoolArray, FloatArray, IntArray, invert_pose, transform_points
-from core.quality.hidden_cavity import HiddenCavity
+from core.quality.measures import HiddenCavity
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics
 
@@ -27,7 +27,7 @@ SMALLEST_SHARE = 0.02
 FEWEST_VOXELS = 10
 """... and this many voxels."""
 WALL_VOXELS = 2.0
-"""How far behind a seen surface its wall is taken for known; deeper a view only believes."""
+"""How far behind a seen surface its wall is taken for known; deeper a view only assumes."""
 RAY_SPACING_VOXELS = 0.7
 NORMAL_BLUR_VOXELS = 1.5
 PADDING_VOXELS = 6
@@ -88,7 +88,7 @@ def propose_views(
     camera: DepthCamera,
     most: int = MOST_VIEWS,
 ) -> tuple[ProposedView, ...]:
-    """Choose up to `most` of the candidates `T_base_camera` (N, 4, 4), each for what it adds to those before.
+    """Choose up to `most` of the candidates `T_base_camera` (N, 4, 4), each for what it adds.
 
     About 1 ms a candidate. Stops where a view adds less than 2 % of the hidden region; nothing hidden, or
     nothing that any candidate could reveal, gives an empty answer.
@@ -199,13 +199,13 @@ def _reveal(
     eye = (pose[:3, 3] - origin_m) / voxel_m
     projector = (pose[:3, 3] + baseline_m * pose[:3, 0] - origin_m) / voxel_m
     nothing = np.empty(0, dtype=np.int32)
-    on_the_way = np.empty(sum(wall.shape) + 3, dtype=np.int32)
+    along_ray = np.empty(sum(wall.shape) + 3, dtype=np.int32)
     for row in range(top, bottom, step):
         for column in range(left, right, step):
             x, y = (column - matrix[0, 2]) / matrix[0, 0], (row - matrix[1, 2]) / matrix[1, 1]
             # Its z in the camera is 1, so lengths along it are depths.
             ray = (pose[:3, 0] * x + pose[:3, 1] * y + pose[:3, 2]) / voxel_m
-            depth_m, n, i, j, k = _march(wall, targets, eye, ray, np.inf, on_the_way)
+            depth_m, n, i, j, k = _march(wall, targets, eye, ray, np.inf, along_ray)
             if n == 0 or depth_m < min_range_m or depth_m == np.inf:
                 continue
             normal = normals[i, j, k]
@@ -215,7 +215,7 @@ def _reveal(
             # A little before the wall, so that it does not shade itself.
             end = eye + (depth_m - 0.5 * voxel_m) * ray
             if _march(wall, targets, end, projector - end, 1.0, nothing)[0] == np.inf:
-                revealed[on_the_way[:n]] = True
+                revealed[along_ray[:n]] = True
 
 
 @numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
@@ -229,8 +229,8 @@ def _march(
 ) -> tuple[float, int, int, int, int]:
     """Follow a ray, in voxels, to the first wall (Amanatides and Woo 1987).
 
-    Returns the length to it in lengths of the ray (infinite if there is none), how many targets were found on
-    the way (as many as `found` holds), and the wall's voxel.
+    Returns the length to it in lengths of the ray (infinite if there is none), how many targets were found
+    along it (as many as `found` holds), and the wall's voxel.
     """
     length, last = 0.0, longest
     for axis in range(3):
@@ -259,7 +259,7 @@ def _march(
 
 @numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
 def _first_step(start: float, slope: float, length: float, size: int) -> tuple[int, float, float, int]:
-    """Along one axis: the voxel, the lengths to the next one and between two, and the way the index goes."""
+    """Along one axis: the voxel, the lengths to the next one and between two, and the index step."""
     slope = slope if abs(slope) > PARALLEL else PARALLEL
     voxel = min(max(int(np.floor(start + length * slope)), 0), size - 1)
     step = 1 if slope > 0 else -1

@@ -1,22 +1,20 @@
-"""Is one view any good: told from its images alone while scanning, and against the model afterwards."""
+"""How good one view is: judged by its images alone while scanning, and against the model afterwards."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from importlib import import_module
 from itertools import product
 from math import degrees, radians
-from typing import Any
 
 import numpy as np
 
 from core.geometry import FloatArray, invert_pose, transform_points
-from core.mesh import TriangleMesh
+from core.mesh import SurfaceDistance, TriangleMesh
 from core.reconstruction.pose_health import measure_view_health
 from core.scan.model import CropBox, Intrinsics, RgbdFrame
 
 FARTHEST_M = 3.0
-"""What lies beyond is no part of the cell."""
+"""What lies beyond is not part of the cell."""
 SMALLEST_VALID_SHARE = 0.4
 STRAY_TABLE_M = 0.010
 STEEPEST_TABLE_RAD = radians(2.0)
@@ -31,7 +29,7 @@ FEWEST_POINTS = 100
 
 @dataclass(frozen=True)
 class ViewQuality:
-    """What one view is worth.
+    """How good one view is.
 
     Attributes:
         name: the frame's.
@@ -61,7 +59,7 @@ class ViewQuality:
 
     @property
     def is_useless(self) -> bool:
-        """Whether it tells nothing, so that it counts as not taken."""
+        """Whether it shows nothing, so that it counts as not taken."""
         return self.valid_share == 0 or self.is_repeated
 
     @property
@@ -70,23 +68,23 @@ class ViewQuality:
         if self.valid_share == 0:
             return (f"{self.name} has no depth at all; check the camera's projector and take it again.",)
         if self.is_repeated:
-            return (f"{self.name} repeats the image before it although the arm moved: the camera hangs.",)
+            return (f"{self.name} repeats the previous image although the arm moved: the camera is frozen.",)
         found = []
         if self.valid_share < SMALLEST_VALID_SHARE:
             found.append(
                 f"{self.name} has a depth in only {self.valid_share:.0%} of the pixels around the object; "
-                "look for glare, or for something before the camera."
+                "look for glare, or for something in front of the camera."
             )
         if self.table_offset_m is not None and abs(self.table_offset_m) > STRAY_TABLE_M:
             side = "above" if self.table_offset_m > 0 else "below"
             found.append(
                 f"{self.name} sees the table {abs(self.table_offset_m) * 1000:.0f} mm {side} its place; "
-                "its pose is wrong, take it again."
+                "its pose is wrong; take it again."
             )
         if self.table_tilt_rad is not None and self.table_tilt_rad > STEEPEST_TABLE_RAD:
             found.append(
                 f"{self.name} sees the table tilted by {degrees(self.table_tilt_rad):.1f} degrees; "
-                "its pose is wrong, take it again."
+                "its pose is wrong; take it again."
             )
         return tuple(found)
 
@@ -105,7 +103,7 @@ def check_view(
         frame: the view.
         intrinsics: of its camera.
         box: the crop box.
-        before: the view taken before it, to find a camera that hangs.
+        before: the view taken before it, to detect a frozen camera.
         table_height_m: the table's height, known in the cell or from the views so far.
     """
     health = measure_view_health(frame, intrinsics, box, FARTHEST_M)
@@ -144,16 +142,10 @@ def is_repeated(frame: RgbdFrame, before: RgbdFrame) -> bool:
 
 
 class ModelResiduals:
-    """Distances of views' points to a model."""
+    """Distances of views' points to a model; make it in a worker."""
 
     def __init__(self, mesh: TriangleMesh, platform_height_m: float) -> None:
-        # Loaded late, for it takes a second, and as Any: its stubs do not know numpy's arrays.
-        o3d: Any = import_module("open3d")
-        self._tensor = o3d.core.Tensor
-        self._scene = o3d.t.geometry.RaycastingScene()
-        self._scene.add_triangles(
-            self._tensor(mesh.vertices_m.astype(np.float32)), self._tensor(mesh.faces.astype(np.uint32))
-        )
+        self._surface = SurfaceDistance(mesh)
         self._low: FloatArray = mesh.aabb_min_m - NEAR_M
         self._low[2] = platform_height_m + ABOVE_FOOT_M
         self._high: FloatArray = mesh.aabb_max_m + NEAR_M
@@ -161,9 +153,8 @@ class ModelResiduals:
     def of_points_m(self, points_m: FloatArray) -> FloatArray:
         """Distances (M,) of those points (N, 3) that lie on the object."""
         near = points_m[((points_m > self._low) & (points_m < self._high)).all(axis=1)]
-        distances = self._scene.compute_distance(self._tensor(near.astype(np.float32))).numpy().astype(float)
-        on_object: FloatArray = distances[distances < NEAR_M]
-        return on_object
+        distances = self._surface.of_m(near).astype(float)
+        return distances[distances < NEAR_M]
 
     def add_to(self, view: ViewQuality, frame: RgbdFrame, intrinsics: Intrinsics) -> ViewQuality:
         """Return the view with its residuals; unchanged if it shows too little of the object."""

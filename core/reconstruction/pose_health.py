@@ -1,4 +1,4 @@
-"""How well the views' poses agree, told by the table alone (no model, no second measurement needed).
+"""How well the views' poses agree, measured by the table alone (no model, no second measurement needed).
 
 Every view sees the table; if all poses were right, all would see it at one height and level.
 """
@@ -9,12 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from core.geometry import FloatArray
 from core.parameters.reconstruction import ReconstructionParameters
-from core.reconstruction.planes import Plane, find_plane
-from core.scan.crop_box import crop_box_of
-from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
+from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan, crop_box_of
 
 STRIDE = 6
 SURROUNDINGS_M = 0.3
@@ -22,6 +21,13 @@ SURROUNDINGS_M = 0.3
 FEWEST_POINTS = 300
 SMALLEST_SHARE = 0.2
 FEWEST_VIEWS = 3
+N_HYPOTHESES = 200
+N_VOTERS = 4000
+"""Points that vote for a hypothesis; the least squares after it use all."""
+N_REFINEMENTS = 5
+STEEPEST_RAD = np.deg2rad(10.0)
+INLIER_DISTANCE_M = 0.006
+"""Twice the depth noise of a structured-light camera at 0.7 m."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +66,6 @@ class PoseHealth:
         return np.array([view.height_m for view in self.views if view.height_m is not None], dtype=float)
 
 
-def measure_pose_health(scan: Scan, parameters: ReconstructionParameters) -> PoseHealth:
-    """Fit the table in every view, near the crop box."""
-    return pose_health_of(scan, find_tables(scan, parameters), crop_box_of(scan, parameters))
-
-
 def find_tables(scan: Scan, parameters: ReconstructionParameters) -> tuple[Plane | None, ...]:
     """Fit the table in every view, near the crop box; none where it is not seen."""
     box = crop_box_of(scan, parameters)
@@ -80,7 +81,7 @@ def pose_health_of(scan: Scan, tables: Sequence[Plane | None], box: CropBox) -> 
 def measure_view_health(
     frame: RgbdFrame, intrinsics: Intrinsics, box: CropBox, max_depth_m: float
 ) -> ViewHealth:
-    """Fit the table in one view, around the crop box; for a live warning while scanning, too."""
+    """Fit the table in one view, around the crop box; also for a live warning while scanning."""
     return _view_health(frame.name, _find_table(frame, intrinsics, box, max_depth_m), box)
 
 
@@ -98,3 +99,59 @@ def _view_health(name: str, table: Plane | None, box: CropBox) -> ViewHealth:
         return ViewHealth(name, None, None)
     middle_x, middle_y = (np.array(box.min_m[:2]) + np.array(box.max_m[:2])) / 2
     return ViewHealth(name, float(table.height_m(middle_x, middle_y)), table.tilt_rad)
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A plane through `point_m` (3,) with the upward unit `normal` (3,); `share` of the points lies on it."""
+
+    point_m: FloatArray
+    normal: FloatArray
+    share: float
+
+    @property
+    def tilt_rad(self) -> float:
+        """Angle between the normal and the vertical."""
+        return float(np.arccos(np.clip(self.normal[2], -1.0, 1.0)))
+
+    def height_m(self, x_m: npt.ArrayLike, y_m: npt.ArrayLike) -> FloatArray:
+        """Height z of the plane above (x, y)."""
+        dx, dy = np.asarray(x_m) - self.point_m[0], np.asarray(y_m) - self.point_m[1]
+        height: FloatArray = self.point_m[2] - (self.normal[0] * dx + self.normal[1] * dy) / self.normal[2]
+        return height
+
+
+def find_plane(points_m: FloatArray) -> Plane | None:
+    """Return the near-horizontal plane that most of the points (N, 3) lie on; none if there is none.
+
+    RANSAC over seeded samples, then least squares over the inliers.
+    """
+    if len(points_m) < 3:
+        return None
+    random = np.random.default_rng(0)
+    corners = points_m[random.integers(len(points_m), size=(N_HYPOTHESES, 3))]
+    voters = (
+        points_m if len(points_m) <= N_VOTERS else points_m[random.integers(len(points_m), size=N_VOTERS)]
+    )
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1)
+    is_flat = np.abs(normals[:, 2]) > np.cos(STEEPEST_RAD) * np.maximum(lengths, 1e-9)
+    if not is_flat.any():
+        return None
+    normals, anchors = normals[is_flat] / lengths[is_flat, None], corners[is_flat, 0]
+    distances = np.abs(voters @ normals.T - np.einsum("ij,ij->i", anchors, normals))
+    best = int((distances < INLIER_DISTANCE_M).sum(axis=0).argmax())
+    return _refine(points_m, anchors[best], normals[best])
+
+
+def _refine(points_m: FloatArray, point_m: FloatArray, normal: FloatArray) -> Plane | None:
+    share = 0.0
+    for _ in range(N_REFINEMENTS):
+        inliers = points_m[np.abs((points_m - point_m) @ normal) < INLIER_DISTANCE_M]
+        if len(inliers) < 3:
+            return None
+        share = len(inliers) / len(points_m)
+        point_m = inliers.mean(axis=0)
+        normal = np.linalg.svd(inliers - point_m, full_matrices=False)[2][2]
+    normal = normal * np.sign(normal[2])
+    return Plane(point_m, normal, share) if normal[2] > np.cos(STEEPEST_RAD) else None

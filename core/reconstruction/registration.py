@@ -1,23 +1,169 @@
-"""How far the views lie from one another: each view's points against the surfaces the other views show.
+"""The surfaces that the views show of the object, and how far they lie from one another.
 
-Points to planes over all pairs of views (Chen & Medioni 1992), all poses moved together. Views are compared
-with each other and not with the fused volume, whose walls are thicker as long as the poses err.
+A depth image shows a plane around each pixel: a smoothed distance and the direction of the surface. A plane's
+inverse depth is linear over the image, and so is the noise of a camera that measures disparity, so the fit is
+three sums over a window.
+
+Each view's points are compared with the planes of the others: points to planes over all pairs of views (Chen
+& Medioni 1992), all poses moved together. Views are compared with each other and not with the fused volume,
+whose walls are thicker as long as the poses err.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numba
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry import FloatArray
-from core.reconstruction.depth_planes import STRIDE, PlaneImage
-from core.reconstruction.view_surfaces import ViewSurfaces
+from core.geometry import FloatArray, IntArray, transform_points
+from core.scan.model import CropBox, DepthImage, Intrinsics, RgbdFrame, Scan
 
+PlaneImage = npt.NDArray[np.float32]
+
+STRIDE = 2
+HALF_WINDOW_PX = 3
+LARGEST_STEP_M = 0.012
+"""What differs more in depth from the middle pixel is another surface: a slope of 73 degrees at 0.7 m."""
+SMALLEST_SHARE = 0.6
+"""Share of the window that must lie on the surface: there is no plane beside an edge."""
+LEAST_FACING = 0.1
+POINTS_PER_VIEW = 900
+SMALLEST_FACING = 0.35
+"""Cosine between a point's normal and its ray: surfaces seen more obliquely are noisy and carry little."""
 SMALLEST_COSINE = 0.8
 """Between two views' directions of one surface: keeps the two sides of a wall apart."""
+
+
+def fit_planes(depth_m: DepthImage, intrinsics: Intrinsics, max_depth_m: float) -> PlaneImage:
+    """Return planes (H / 2, W / 2, 3) of every second pixel (row, column), NaN where there is none.
+
+    A plane (a, b, c) holds the points with `a x + b y + c z = 1` in the camera's frame, in 1/m.
+    """
+    depth_m = np.ascontiguousarray(depth_m, dtype=np.float32)
+    planes: PlaneImage = _fit_planes(depth_m, _pixels(intrinsics), max_depth_m)
+    return planes
+
+
+def _pixels(camera: Intrinsics) -> FloatArray:
+    return np.array([camera.fx, camera.fy, camera.cx, camera.cy])
+
+
+def facing_image(planes: PlaneImage, shape: tuple[int, int], intrinsics: Intrinsics) -> DepthImage:
+    """Return (H, W): distance along the surface's normal for one of depth; 1 where no plane is known."""
+    height, width = shape
+    x = (np.arange(planes.shape[1]) * STRIDE - intrinsics.cx) / intrinsics.fx
+    y = (np.arange(planes.shape[0]) * STRIDE - intrinsics.cy) / intrinsics.fy
+    a, b, c = planes[..., 0], planes[..., 1], planes[..., 2]
+    facing = (a * x + b * y[:, None] + c) / np.sqrt(a * a + b * b + c * c)
+    facing = np.where(np.isnan(facing), 1.0, np.maximum(facing, LEAST_FACING)).astype(np.float32)
+    return np.ascontiguousarray(facing.repeat(STRIDE, axis=0).repeat(STRIDE, axis=1)[:height, :width])
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
+def _fit_planes(depth_m: DepthImage, camera: npt.NDArray[np.float64], max_depth_m: float) -> PlaneImage:
+    height, width = depth_m.shape
+    planes = np.full(((height + 1) // STRIDE, (width + 1) // STRIDE, 3), np.nan, np.float32)
+    for row in range(0, height, STRIDE):
+        for column in range(0, width, STRIDE):
+            middle_m = depth_m[row, column]
+            if middle_m > 0 and middle_m <= max_depth_m:
+                _fit_one(depth_m, row, column, camera, planes[row // STRIDE, column // STRIDE])
+    return planes
+
+
+@numba.njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
+def _fit_one(
+    depth_m: DepthImage,
+    row: int,
+    column: int,
+    camera: npt.NDArray[np.float64],
+    plane: npt.NDArray[np.float32],
+) -> None:
+    """Least squares of the inverse depth over the window, by Cramer's rule."""
+    height, width = depth_m.shape
+    middle_m = depth_m[row, column]
+    n = su = sv = suu = suv = svv = sd = sud = svd = 0.0
+    for dv in range(max(-HALF_WINDOW_PX, -row), min(HALF_WINDOW_PX, height - 1 - row) + 1):
+        for du in range(max(-HALF_WINDOW_PX, -column), min(HALF_WINDOW_PX, width - 1 - column) + 1):
+            z = depth_m[row + dv, column + du]
+            if z > 0 and abs(z - middle_m) < LARGEST_STEP_M:
+                inverse = 1.0 / z
+                n += 1.0
+                su += du
+                sv += dv
+                suu += du * du
+                suv += du * dv
+                svv += dv * dv
+                sd += inverse
+                sud += du * inverse
+                svd += dv * inverse
+    if n < SMALLEST_SHARE * (2 * HALF_WINDOW_PX + 1) ** 2:
+        return
+    cuu, cuv, cvv = suu - su * su / n, suv - su * sv / n, svv - sv * sv / n
+    cud, cvd = sud - su * sd / n, svd - sv * sd / n
+    determinant = cuu * cvv - cuv * cuv
+    if determinant < 1e-6:
+        return
+    along_u = (cud * cvv - cvd * cuv) / determinant
+    along_v = (cvd * cuu - cud * cuv) / determinant
+    at_middle = (sd - along_u * su - along_v * sv) / n
+    plane[0] = along_u * camera[0]
+    plane[1] = along_v * camera[1]
+    plane[2] = at_middle - along_u * (column - camera[2]) - along_v * (row - camera[3])
+
+
+@dataclass(frozen=True)
+class ViewSurfaces:
+    """All views' surfaces of the object, each in its camera's frame.
+
+    Attributes:
+        planes: (V, h, w, 3), see `fit_planes`.
+        points_m: (N, 3), points on planes, of all views.
+        normals: (N, 3), unit, towards the camera.
+        view: (N,), which view a point is of.
+        camera: (4,), fx, fy, cx, cy in pixels.
+    """
+
+    planes: PlaneImage
+    points_m: FloatArray
+    normals: FloatArray
+    view: IntArray
+    camera: FloatArray
+
+
+def view_surfaces(scan: Scan, planes: Sequence[PlaneImage], block: CropBox) -> ViewSurfaces:
+    """Choose points of every view in a block (base frame) around the object."""
+    chosen = [
+        _points(plane, frame, scan.intrinsics, block)
+        for plane, frame in zip(planes, scan.frames, strict=True)
+    ]
+    points, normals = (np.concatenate(parts) for parts in zip(*chosen, strict=True))
+    view = np.repeat(np.arange(len(chosen)), [len(of_view) for of_view, _ in chosen])
+    return ViewSurfaces(np.stack(planes), points, normals, view, _pixels(scan.intrinsics))
+
+
+def _points(
+    planes: PlaneImage, frame: RgbdFrame, camera: Intrinsics, block: CropBox
+) -> tuple[FloatArray, FloatArray]:
+    """Return points and normals (N, 3) of one view, evenly thinned out, in the camera's frame."""
+    rows, columns = np.nonzero(np.isfinite(planes[..., 0]))
+    plane = planes[rows, columns].astype(float)
+    x = (columns * STRIDE - camera.cx) / camera.fx
+    y = (rows * STRIDE - camera.cy) / camera.fy
+    rays = np.column_stack([x, y, np.ones_like(x)])
+    inverse_depth = np.einsum("ij,ij->i", plane, rays)
+    steepness = np.linalg.norm(plane, axis=1)
+    facing = inverse_depth / (steepness * np.linalg.norm(rays, axis=1))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        points = rays / inverse_depth[:, None]
+    in_base = transform_points(frame.T_base_camera, points)
+    used = ((in_base > block.min_m) & (in_base < block.max_m)).all(axis=1) & (facing > SMALLEST_FACING)
+    index = np.nonzero(used)[0]
+    index = index[:: max(1, len(index) // POINTS_PER_VIEW)]
+    return points[index], -plane[index] / steepness[index, None]
 
 
 @dataclass(frozen=True)
@@ -59,7 +205,7 @@ def compare_views(
     Args:
         surfaces: of all views.
         poses: (V, 4, 4), camera to base.
-        center_m: (3,) in the base frame, about which the steps turn.
+        center_m: (3,) in the base frame, about which the steps rotate.
         reach_m: the largest distance.
     """
     n_views = len(poses)

@@ -1,19 +1,20 @@
-"""What the reconstruction hands on."""
+"""What the reconstruction hands on: the surface, the poses' health, and how the poses were corrected."""
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 from core.files import read_json, write_json
+from core.geometry import FloatArray
 from core.mesh import TriangleMesh
-from core.ply import read_ply, write_ply
-from core.reconstruction.corrections import Refinement, ViewCorrection
+from core.mesh_file import read_ply, write_ply
 from core.reconstruction.pose_health import PoseHealth, ViewHealth
+from core.scan.model import Scan
 
 MESH_FILE = "mesh.ply"
 FACTS_FILE = "result.json"
@@ -61,9 +62,7 @@ class Reconstruction:
             height_m, truncation_m = float(facts["platform_height_m"]), float(facts["truncation_m"])
             refinement = None if facts["refinement"] is None else _refinement(facts["refinement"])
         except (KeyError, TypeError, ValueError) as error:
-            raise SessionError(
-                f"{folder / FACTS_FILE} is damaged ({error!r}); run the reconstruction again."
-            ) from error
+            raise SessionError(f"{folder / FACTS_FILE} is damaged ({error!r}).", Remedy.RUN_AGAIN) from error
         return Reconstruction(
             read_ply(folder / MESH_FILE), height_m, truncation_m, PoseHealth(views), refinement
         )
@@ -82,3 +81,55 @@ def _refinement(facts: dict[str, Any]) -> Refinement:
         for view in facts["views"]
     ]
     return Refinement(**facts | {"views": tuple(views)})
+
+
+@dataclass(frozen=True)
+class ViewCorrection:
+    """What one view's pose was changed by, and how well it fits the others.
+
+    Attributes:
+        name: of the view.
+        shift_m: how far the camera was moved.
+        turn_rad: by what angle it was rotated.
+        residual_before_m: distance (rms) of its points from the surfaces of the other views, with the
+            recorded poses; none if it meets no other view.
+        residual_after_m: the same with the corrected poses.
+        T_base_camera: (4, 4), the corrected pose.
+    """
+
+    name: str
+    shift_m: float
+    turn_rad: float
+    residual_before_m: float | None
+    residual_after_m: float | None
+    T_base_camera: FloatArray
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """The corrections of all views, in the order of the scan, and what they brought.
+
+    Attributes:
+        views: one correction each.
+        residual_before_m: distance (rms) between the views' surfaces, with the recorded poses; none if no two
+            views show the same.
+        residual_after_m: the same with the corrected poses.
+        table_sd_before_m: standard deviation of the table's height over the views; none without a table.
+        table_sd_after_m: the same with the corrected poses.
+        view_error_m: how far (standard deviation) the surface that one view shows errs after the correction,
+            by the nearest matches; noise of the depth included.
+    """
+
+    views: tuple[ViewCorrection, ...]
+    residual_before_m: float | None
+    residual_after_m: float | None
+    table_sd_before_m: float | None
+    table_sd_after_m: float | None
+    view_error_m: float | None
+
+    def applied_to(self, scan: Scan) -> Scan:
+        """Return the scan with the corrected poses."""
+        frames = zip(scan.frames, self.views, strict=True)
+        return replace(
+            scan, frames=tuple(replace(frame, T_base_camera=view.T_base_camera) for frame, view in frames)
+        )

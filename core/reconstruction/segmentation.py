@@ -1,4 +1,9 @@
-"""Telling the object from the scene: its part of the volume (Sec. IV-A and its footnote)."""
+"""Telling the object from the scene: its part of the volume (Sec. IV-A and its footnote).
+
+What the views could not see is solid above the support, and nothing below it. No view sees the inside of a
+wall or of a floor. Left free, the fused surface would be a crust as thick as the truncation; taken as solid,
+a wall is as thick as the views from its two sides say, and the object stands flat on its support.
+"""
 
 from __future__ import annotations
 
@@ -6,15 +11,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import binary_fill_holes, label
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from core.errors import StageError
-from core.geometry import FloatArray, IntArray
+from core.geometry import BoolArray, FloatArray, IntArray
 from core.parameters.reconstruction import ReconstructionParameters
-from core.reconstruction.clusters import largest_cluster
-from core.reconstruction.planes import Plane, find_plane
-from core.reconstruction.tsdf import SURFACE_BAND, TsdfVolume
-from core.scan.crop_box import crop_box_of
-from core.scan.model import Scan
+from core.reconstruction.pose_health import Plane, find_plane
+from core.reconstruction.tsdf import SURFACE_BAND, DistanceGrid, TsdfVolume
+from core.scan.model import CropBox, Scan, crop_box_of
 
 CLUSTER_GAP_M = 0.015
 SMALLEST_AREA_M2 = 0.0016
@@ -23,6 +31,13 @@ PADDING_LOW = (3, 2, 3)
 PADDING_HIGH = (3, 10, 3)
 """Voxels around the cluster, as in the released code; the upper side is exclusive."""
 STRIDE = 6
+PLATFORM_STRIDE = 3
+LOWEST_PERCENT = 0.2
+"""What may be noise below the object's foot."""
+SMALLEST_DISTANCE = np.float32(1e-4)
+"""Marching cubes makes faces without area where a distance is exactly zero."""
+FLOOR_VOXELS = 1.5
+"""Thinner than a voxel, a floor may lie between two of them and be lost."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +59,16 @@ class Part:
         low = self.low.copy()
         low[2] = max(0, min(int(low[2]), layer))
         return replace(self, low=low)
+
+    def box(self, volume: TsdfVolume) -> CropBox:
+        """The block as a box in the base frame."""
+        low, high = volume.centers_m(self.low).tolist(), volume.centers_m(self.high - 1).tolist()
+        return CropBox((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def whole(volume: TsdfVolume) -> Part:
+    """Return all of a volume as the object's part."""
+    return Part(np.zeros(3, dtype=np.int64), np.array(volume.distance.shape), volume.surface_voxels())
 
 
 def find_object(
@@ -81,8 +106,9 @@ def find_table(scan: Scan, parameters: ReconstructionParameters) -> Plane:
     Raises:
         StageError: no near-horizontal plane lies in the crop box.
     """
-    points = _points_in_box(scan, parameters)
-    plane = find_plane(points)
+    points = _all_points(scan, parameters)
+    box = crop_box_of(scan, parameters)
+    plane = find_plane(points[((points >= box.min_m) & (points <= box.max_m)).all(axis=1)])
     if plane is None:
         raise StageError(
             f"No table was found in the crop box{_where_points_are(scan, parameters)[:-1]}; "
@@ -98,13 +124,6 @@ def touched_sides(part: Part, volume: TsdfVolume, *, with_bottom: bool) -> list[
     if with_bottom:
         sides["-z"] = low[2]
     return [side for side, touched in sides.items() if touched]
-
-
-def _points_in_box(scan: Scan, parameters: ReconstructionParameters) -> FloatArray:
-    points = _all_points(scan, parameters)
-    box = crop_box_of(scan, parameters)
-    low, high = np.array(box.min_m), np.array(box.max_m)
-    return points[((points >= low) & (points <= high)).all(axis=1)]
 
 
 def _all_points(scan: Scan, parameters: ReconstructionParameters) -> FloatArray:
@@ -124,3 +143,130 @@ def _where_points_are(scan: Scan, parameters: ReconstructionParameters) -> str:
         f"; the depth points lie around ({x:.2f}, {y:.2f}, {z:.2f}) m in the base frame, so set "
         "reconstruction.crop_min_m and crop_max_m to the place of the object."
     )
+
+
+def largest_cluster(indices: IntArray, gap_voxels: float) -> IntArray:
+    """The largest set of voxels (N, 3) in which each is within `gap_voxels` of another, rows in their order.
+
+    Neighbouring voxels are joined first, which leaves few groups to be measured against one another.
+    """
+    low = indices.min(axis=0)
+    grid = np.zeros(indices.max(axis=0) - low + 1, dtype=np.bool_)
+    grid[tuple((indices - low).T)] = True
+    labels, n_groups = label(grid, structure=np.ones((3, 3, 3)))
+    group_of_voxel = labels[tuple((indices - low).T)] - 1
+    cluster_of_group = _join(indices, group_of_voxel, n_groups, gap_voxels)
+    cluster_of_voxel = cluster_of_group[group_of_voxel]
+    largest: IntArray = indices[cluster_of_voxel == np.bincount(cluster_of_voxel).argmax()]
+    return largest
+
+
+def _join(indices: IntArray, group_of_voxel: IntArray, n_groups: int, gap_voxels: float) -> IntArray:
+    """Return the cluster (G,) of each group."""
+    order = np.argsort(group_of_voxel, kind="stable")
+    members = np.split(indices[order], np.cumsum(np.bincount(group_of_voxel, minlength=n_groups))[:-1])
+    lows = np.array([group.min(axis=0) for group in members])
+    highs = np.array([group.max(axis=0) for group in members])
+    pairs: list[tuple[int, int]] = []
+    for first, group in enumerate(members):
+        overlap = (lows <= highs[first] + gap_voxels) & (highs >= lows[first] - gap_voxels)
+        others = [int(other) for other in np.nonzero(overlap.all(axis=1))[0] if other > first]
+        tree = cKDTree(group) if others else None
+        for other in others:
+            if tree is not None and np.min(tree.query(members[other])[0]) <= gap_voxels:
+                pairs.append((first, other))
+    ends = np.array(pairs, dtype=int).reshape(-1, 2)
+    graph = coo_array((np.ones(len(ends), dtype=np.int8), (ends[:, 0], ends[:, 1])), (n_groups, n_groups))
+    clusters: IntArray = connected_components(graph, directed=False)[1].astype(np.int64)
+    return clusters
+
+
+def estimate_platform_height_m(
+    volume: TsdfVolume, part: Part, scan: Scan, parameters: ReconstructionParameters
+) -> float:
+    """Height of the lowest depth points of the object: the platform itself leaves none.
+
+    A few millimetres too low with poor poses, too high when every view looks steeply down.
+    """
+    low_m = volume.centers_m(part.seen.min(axis=0)) - volume.voxel_m
+    high_m = volume.centers_m(part.seen.max(axis=0)) + volume.voxel_m
+    heights_m = []
+    for frame in scan.frames:
+        points = frame.points_m(scan.intrinsics, max_depth_m=parameters.max_depth_m, stride=PLATFORM_STRIDE)
+        heights_m.append(points[((points > low_m) & (points < high_m)).all(axis=1), 2])
+    everywhere = np.concatenate(heights_m)
+    return float(np.percentile(everywhere, LOWEST_PERCENT)) if len(everywhere) else float(low_m[2])
+
+
+def fill_unseen(volume: TsdfVolume, part: Part) -> DistanceGrid:
+    """Distances (x, y, z) of the part with -1 in every voxel that only views from behind a surface know of.
+
+    A voxel that lies in no view, or in none with a depth, stays free: it hides behind nothing.
+    """
+    distance = volume.distance[part.slices].copy()
+    distance[(volume.weight[part.slices] == 0) & volume.hidden[part.slices]] = -1.0
+    return distance
+
+
+def cut_at_height(distance: DistanceGrid, volume: TsdfVolume, part: Part, height_m: float) -> DistanceGrid:
+    """Remove what lies below a horizontal plane in the base frame."""
+    _, _, z = _centers(volume, part)
+    return _above(distance, z - height_m, volume.truncation_m)
+
+
+def keep_floor(
+    distance: DistanceGrid, volume: TsdfVolume, part: Part, support_m: float, error_m: float
+) -> DistanceGrid:
+    """Give what is on the support a floor of `FLOOR_VOXELS` where it was seen to have one at all.
+
+    The inside of a low floor lies so near the support that noise puts half of it below: cut there, it is
+    full of holes. Where a column is solid anywhere from a little below the support to a voxel above it,
+    something kept the views from looking through to the table.
+
+    Args:
+        distance: (x, y, z) of the part, before it is cut at the support; below that it is filled, too.
+        volume: it is taken from.
+        part: it covers; reaches a little below the support.
+        support_m: height of the support.
+        error_m: how far a surface may err.
+    """
+    _, _, z = _centers(volume, part)
+    near = (z > support_m - error_m - volume.voxel_m) & (z < support_m + volume.voxel_m)
+    has_floor = np.any((distance < 0) & near, axis=2, keepdims=True)
+    thickness_m = FLOOR_VOXELS * volume.voxel_m
+    floor = np.abs(z - support_m - thickness_m / 2) - thickness_m / 2
+    kept = np.where(has_floor, np.minimum(distance, floor / volume.truncation_m), distance)
+    return kept.astype(np.float32)
+
+
+def cut_at_table(
+    distance: DistanceGrid, volume: TsdfVolume, part: Part, table: Plane, margin_m: float
+) -> DistanceGrid:
+    """Remove what lies below the table, and around the object also what lies `margin_m` above it.
+
+    Under and inside the object nothing is removed above the table, so that a low floor stays (in the
+    footnote of Sec. IV-A a bag loses it).
+    """
+    x, y, z = _centers(volume, part)
+    height_m = z - table.height_m(x, y)
+    is_object = (distance < 0) & (height_m > margin_m)
+    footprint: BoolArray = binary_fill_holes(np.any(is_object, axis=2).astype(np.bool_))
+    around = np.where(footprint[:, :, None], height_m, height_m - margin_m)
+    return _above(distance, around, volume.truncation_m)
+
+
+def _above(distance: DistanceGrid, height_m: npt.ArrayLike, truncation_m: float) -> DistanceGrid:
+    below = np.clip(-np.asarray(height_m) / truncation_m, -1.0, 1.0).astype(np.float32)
+    cut = np.maximum(distance, below)
+    cut[np.abs(cut) < SMALLEST_DISTANCE] = SMALLEST_DISTANCE
+    return cut
+
+
+def _centers(volume: TsdfVolume, part: Part) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Coordinates of the part's voxel centres, shaped to broadcast: (x, 1, 1), (1, y, 1), (1, 1, z)."""
+    axes = [
+        volume.origin_m[axis] + volume.voxel_m * np.arange(part.low[axis], part.high[axis])
+        for axis in range(3)
+    ]
+    x, y, z = np.ix_(*axes)
+    return x, y, z

@@ -1,4 +1,10 @@
-"""The stage from a scan to the object's mesh (Sec. IV-A)."""
+"""The stage from a scan to the object's mesh (Sec. IV-A).
+
+A view that sees the inside of a wall also says "solid" behind it. Where that reaches through a thin wall it
+contradicts the views from outside, so near a surface its own views must outweigh it: a view's weight falls
+with the distance from the surface it saw. All lengths grow with the pose error, or the two sides of a wall
+would erase each other. Figures in docs/decisions/0003-truncation.md.
+"""
 
 from __future__ import annotations
 
@@ -11,25 +17,40 @@ from core.errors import StageError
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.reconstruction.depth_planes import PlaneImage
-from core.reconstruction.fusion import Steps, block_of, fit_all_planes, fuse, whole
-from core.reconstruction.planes import Plane
-from core.reconstruction.platform import estimate_platform_height_m
-from core.reconstruction.pose_health import PoseHealth, find_tables, pose_health_of
+from core.reconstruction.pose_health import Plane, PoseHealth, find_tables, pose_health_of
 from core.reconstruction.refinement import refine_poses
-from core.reconstruction.result import Reconstruction
-from core.reconstruction.segmentation import Part, find_object, find_table, touched_sides
-from core.reconstruction.surface import extract_surface, largest_piece
-from core.reconstruction.truncation import choose_truncation, view_error_m
-from core.reconstruction.tsdf import TsdfVolume
-from core.reconstruction.unseen import cut_at_height, cut_at_table, fill_unseen, keep_floor
-from core.reconstruction.view_surfaces import view_surfaces
-from core.scan.crop_box import crop_box_of
-from core.scan.model import Scan
+from core.reconstruction.registration import PlaneImage, facing_image, fit_planes, view_surfaces
+from core.reconstruction.result import Reconstruction, Refinement
+from core.reconstruction.segmentation import (
+    Part,
+    cut_at_height,
+    cut_at_table,
+    estimate_platform_height_m,
+    fill_unseen,
+    find_object,
+    find_table,
+    keep_floor,
+    touched_sides,
+    whole,
+)
+from core.reconstruction.tsdf import TsdfVolume, extract_surface, largest_piece
+from core.scan.model import CropBox, Scan, crop_box_of
 
+STAGE = "reconstruction"
 COARSE_VOXEL_M = 0.004
 """Edge of the voxels in which the object is looked for."""
 STRAY_VIEW_M = 0.01
+VOXELS_IN_FRONT = 4.0
+FRONT_PER_VIEW_ERROR = 3.0
+LARGEST_M = 0.03
+FALLOFF_VOXELS = 0.8
+FALLOFF_PER_VIEW_ERROR = 2.0
+BEHIND_PER_FALLOFF = 2.5
+"""There the weight has fallen to 0.002."""
+VOXELS_WITHOUT_TABLE = 5.0
+"""The released code's, when the pose error is unknown."""
+SURFACE_PER_TABLE_ERROR = 1.8
+"""A surface of the object errs more than the table's height: a rotation of the camera shifts it sideways."""
 
 
 def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Reporter) -> Reconstruction:
@@ -50,7 +71,7 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
     found = _find(scan, parameters, view_error_m(health, None), steps)
     refinement = None
     if parameters.refine_poses and planes is not None:
-        block = block_of(found.volume, found.part)
+        block = found.part.box(found.volume)
         surfaces = view_surfaces(scan, planes, block)
         refinement = refine_poses(scan, surfaces, tables, health.sd_height_m, block, reporter)
         scan = refinement.applied_to(scan)
@@ -75,7 +96,7 @@ class _Found:
 
 
 def _is_plain(parameters: ReconstructionParameters) -> bool:
-    """Whether the released code's arithmetic is all that is asked for."""
+    """Whether the released code's arithmetic is all that is needed."""
     return parameters.truncation_m is not None and not parameters.refine_poses
 
 
@@ -102,7 +123,7 @@ def _fuse_finely(
     steps: Steps,
 ) -> _Found:
     truncation = choose_truncation(parameters, parameters.voxel_m, error_m)
-    block = block_of(found.volume, _down_to_support(found, support_m))
+    block = _down_to_support(found, support_m).box(found.volume)
     volume = fuse(scan, block, parameters.voxel_m, truncation, parameters.max_depth_m, steps, planes)
     return _Found(volume, whole(volume), found.table)
 
@@ -156,7 +177,7 @@ def _object_mesh(found: _Found, parameters: ReconstructionParameters, support_m:
 def _warn_if_cut_off(
     volume: TsdfVolume, part: Part, parameters: ReconstructionParameters, support_m: float, reporter: Reporter
 ) -> None:
-    # A box that begins just above its platform is how the object is told from the table: no warning for that.
+    # A box that begins just above its platform separates the object from the table: no warning for that.
     is_below_box = support_m < volume.origin_m[2] - volume.voxel_m
     sides = touched_sides(part, volume, with_bottom=is_below_box and parameters.segmentation == "box")
     if sides:
@@ -179,3 +200,92 @@ def _warn_of_stray_views(health: PoseHealth, reporter: Reporter) -> None:
             f"{STRAY_VIEW_M * 1000:.0f} mm off the others, worst {worst} "
             f"by {stray[worst] * 1000:.0f} mm; check their poses."
         )
+
+
+class Steps:
+    """Counts the views of all fusions that a reconstruction needs."""
+
+    def __init__(self, reporter: Reporter, total: int) -> None:
+        self._reporter = reporter
+        self._total = total
+        self._done = 0
+
+    def next(self) -> None:
+        """Count one view.
+
+        Raises:
+            Cancelled: the user asked to stop.
+        """
+        self._done += 1
+        self._reporter.progress(STAGE, self._done, self._total)
+        self._reporter.raise_if_cancelled()
+
+
+def fit_all_planes(scan: Scan, max_depth_m: float, reporter: Reporter) -> tuple[PlaneImage, ...]:
+    """Fit planes in all views.
+
+    Raises:
+        Cancelled: the user asked to stop.
+    """
+    planes = []
+    for frame in scan.frames:
+        reporter.raise_if_cancelled()
+        planes.append(fit_planes(frame.depth_m, scan.intrinsics, max_depth_m))
+    return tuple(planes)
+
+
+def fuse(
+    scan: Scan,
+    box: CropBox,
+    voxel_m: float,
+    truncation: Truncation,
+    max_depth_m: float,
+    steps: Steps,
+    planes: Sequence[PlaneImage] | None = None,
+) -> TsdfVolume:
+    """Fuse all views in a box; with `planes` distances are taken along the surfaces' normals.
+
+    Raises:
+        StageError: the box holds too many voxels.
+        Cancelled: the user asked to stop.
+    """
+    volume = TsdfVolume(
+        box.min_m, box.max_m, voxel_m, truncation.front_m, truncation.behind_m, truncation.falloff_m
+    )
+    for index, frame in enumerate(scan.frames):
+        facing = None
+        if planes is not None:
+            facing = facing_image(planes[index], frame.depth_m.shape, scan.intrinsics)
+        volume.integrate(frame, scan.intrinsics, max_depth_m, facing)
+        steps.next()
+    return volume
+
+
+@dataclass(frozen=True)
+class Truncation:
+    """How a view counts: up to `front_m` and `behind_m`, its weight falling to 1/e within `falloff_m`."""
+
+    front_m: float
+    behind_m: float
+    falloff_m: float = np.inf
+
+
+def choose_truncation(
+    parameters: ReconstructionParameters, voxel_m: float, error_m: float | None
+) -> Truncation:
+    """Return the truncation as set (the same on both sides), or following voxel and pose error."""
+    if parameters.truncation_m is not None:
+        return Truncation(parameters.truncation_m, parameters.truncation_m)
+    if error_m is None:
+        return Truncation(VOXELS_WITHOUT_TABLE * voxel_m, VOXELS_WITHOUT_TABLE * voxel_m)
+    least_m = VOXELS_IN_FRONT * voxel_m
+    front_m = max(min(least_m + FRONT_PER_VIEW_ERROR * error_m, LARGEST_M), least_m)
+    falloff_m = FALLOFF_VOXELS * voxel_m + FALLOFF_PER_VIEW_ERROR * error_m
+    return Truncation(front_m, min(BEHIND_PER_FALLOFF * falloff_m, front_m), falloff_m)
+
+
+def view_error_m(health: PoseHealth, refinement: Refinement | None) -> float | None:
+    """Return how far (standard deviation) the surface of one view errs; none if it is unknown."""
+    if refinement is not None and refinement.view_error_m is not None:
+        return refinement.view_error_m
+    return None if health.sd_height_m is None else SURFACE_PER_TABLE_ERROR * health.sd_height_m

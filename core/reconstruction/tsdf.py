@@ -9,11 +9,13 @@ from __future__ import annotations
 import numba
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from skimage.measure import marching_cubes
 
 from core.errors import StageError
 from core.geometry import BoolArray, FloatArray, IntArray
 from core.mesh import TriangleMesh
-from core.reconstruction.surface import extract_surface
 from core.scan.model import DepthImage, Intrinsics, RgbdFrame
 
 DistanceGrid = npt.NDArray[np.float32]
@@ -26,9 +28,9 @@ LEAST_FREE_WEIGHT = np.float32(0.1)
 FAR_IN_FRONT = np.float32(np.sqrt(-np.log(LEAST_FREE_WEIGHT)))
 """In falloffs, where the weight has fallen to it."""
 BEHIND_GAIN = np.float32(2.0)
-"""With a falloff: how much more a view counts just behind its surface than just in front of it. What is
-thinner than the views are exact is told "solid" from each side and "free" from the other: it must not come
-out as a draw, or it is full of holes."""
+"""With a falloff: how much more a view counts just behind its surface than just in front of it. A wall
+thinner than the views are exact is "solid" from one side and "free" from the other: with equal weights it
+would be full of holes."""
 BEHIND_FASTER = np.float32(1.4)
 """And how much faster that falls behind than in front, so that nothing becomes thicker than it must."""
 SURFACE_BAND = 0.2
@@ -193,3 +195,32 @@ def _integrate(
                 evidence[i, j, k] = before + counts
                 value = min(one, difference / truncation_m)
                 distance[i, j, k] = (distance[i, j, k] * before + value * counts) / (before + counts)
+
+
+def extract_surface(distance: npt.NDArray[np.float32], origin_m: FloatArray, voxel_m: float) -> TriangleMesh:
+    """Zero surface of `distance` (X, Y, Z; positive outside) by Lewiner's marching cubes.
+
+    A layer of free space around the grid closes what touches its border. Without a surface the mesh is empty.
+    """
+    padded = np.pad(distance, 1, constant_values=1.0)
+    if not padded.min() < 0:
+        return TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64))
+    vertices, faces, _, _ = marching_cubes(padded, level=0.0, method="lewiner")
+    return TriangleMesh(origin_m + (vertices.astype(float) - 1.0) * voxel_m, faces.astype(np.int64))
+
+
+def largest_piece(mesh: TriangleMesh) -> TriangleMesh:
+    """The connected piece of the largest signed volume: no crumbs, no cavities (their volume is negative)."""
+    n_vertices = len(mesh.vertices_m)
+    edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
+    graph = coo_array(
+        (np.ones(len(edges), dtype=np.int8), (edges[:, 0], edges[:, 1])), (n_vertices, n_vertices)
+    )
+    n_pieces, piece_of_vertex = connected_components(graph, directed=False)
+    piece_of_face = piece_of_vertex[mesh.faces[:, 0]]
+    a, b, c = (mesh.vertices_m[mesh.faces[:, k]] - mesh.vertices_m[0] for k in range(3))
+    volumes = np.bincount(piece_of_face, np.einsum("ij,ij->i", a, np.cross(b, c)), minlength=n_pieces)
+    best = int(np.argmax(volumes))
+    kept = piece_of_vertex == best
+    new_index = np.cumsum(kept) - 1
+    return TriangleMesh(mesh.vertices_m[kept], new_index[mesh.faces[piece_of_face == best]])

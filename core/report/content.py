@@ -1,4 +1,4 @@
-"""What a report tells."""
+"""What goes into a report."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from core.imagination.amount.result import Amount
 from core.imagination.capacity.result import Capacity
-from core.imagination.holding.result import Holding
-from core.imagination.results import Containability, PourChoice, PourGrid
-from core.imagination.risk.results import PourRisk
+from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
+from core.imagination.retention.result import Retention
 from core.mesh import TriangleMesh
-from core.motion.pour.choosing import PourMotions
+from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters
 from core.session.operator_choice import OperatorChoice
 from core.session.pour_runs import PourRun
@@ -28,7 +27,7 @@ Media: TypeAlias = bytes | Path
 
 @dataclass(frozen=True)
 class ReportContent:
-    """All that goes into a report; what is None or empty is said to be missing, with the reason.
+    """All that goes into a report; the report says of what is None or empty that it is missing, and why.
 
     Attributes:
         name: of the session.
@@ -42,18 +41,18 @@ class ReportContent:
         quality: of the scan; None when the mesh was given.
         pours: None when none were imagined.
         capacity: what the object holds; None when Omega decided, or nothing stayed.
-        holding: how firmly; as `capacity`.
+        retention: how far it can be tilted before candies leave it; as `capacity`.
         amount: how many candies shall go in; as `capacity`.
         choice: None when there is no pour to choose.
         risk: of the pours; None when no tries were made.
-        paper_choice: what the paper's rule says.
+        paper_choice: the choice by the paper's rule.
         scan_pictures: caption to picture, small; one a view.
         pictures: caption to picture; wide ones get a row of their own.
         films: caption to film.
         seconds: stage to how long it took.
         versions: program to version.
         warnings: sentences the stages gave.
-        motions: which pours an arm can make; None when that was not asked.
+        motions: which pours an arm can make; None when that was not checked.
         runs: the pours that an arm made, or began.
         operator: what a person chose instead of the program; None when nobody did.
     """
@@ -69,7 +68,7 @@ class ReportContent:
     quality: ScanQuality | None = None
     pours: PourGrid | None = None
     capacity: Capacity | None = None
-    holding: Holding | None = None
+    retention: Retention | None = None
     amount: Amount | None = None
     choice: PourChoice | None = None
     risk: PourRisk | None = None

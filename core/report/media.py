@@ -24,7 +24,7 @@ class Figure:
 
 
 def embed_pictures(pictures: Mapping[str, Media]) -> list[Figure]:
-    """Embed pictures by their captions; one that cannot be used does not spoil the report."""
+    """Embed pictures by their captions; one that cannot be used is marked as missing."""
     return [_embed_picture(caption, media) for caption, media in pictures.items()]
 
 
@@ -34,7 +34,7 @@ def embed_films(films: Mapping[str, Media]) -> list[Figure]:
 
 
 def data_uri(kind: str, content: bytes) -> str:
-    """Return bytes as an address that holds them."""
+    """Return bytes as a data URI."""
     return f"data:{kind};base64,{base64.b64encode(content).decode('ascii')}"
 
 

@@ -6,31 +6,35 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from core.imagination.amount.words import amount_text
-from core.imagination.holding.words import holding_sentence
+from core.files import write_whole
+from core.imagination.amount.result import amount_text
 from core.imagination.results import Containability, PourGrid
+from core.imagination.retention.result import Retention, retention_sentence
 from core.report.content import ReportContent
-from core.report.footprint import footprint_plot
 from core.report.media import data_uri, embed_films, embed_pictures
-from core.report.motions import motion_reasons, motion_rows, motion_sentence, operator_sentence, run_rows
-from core.report.pour_map import pour_map
+from core.report.plots import footprint_plot, pour_map, retention_plot
 from core.report.sentences import (
+    MM,
     has_spread,
+    motion_sentence,
     omega_texts,
-    paper_verdict_sentence,
+    omega_verdict_sentence,
+    operator_sentence,
     pours_sentence,
     risk_sentence,
     verdict_sentence,
 )
 from core.report.tables import (
-    MM,
     health_sentence,
-    holding_facts,
+    motion_reasons,
+    motion_rows,
     object_facts,
     parameter_rows,
     pour_rows,
     refinement_sentence,
+    retention_facts,
     risk_rows,
+    run_rows,
     time_rows,
     view_rows,
 )
@@ -47,13 +51,8 @@ def write_report(content: ReportContent, path: Path) -> None:
         SessionError: the disk is full or the folder may not be written.
     """
     page = render_page(content)
-    unfinished = path.with_name(f".{path.name}")
     with explained(path.parent):
-        try:
-            unfinished.write_text(page, encoding="utf-8")
-            unfinished.replace(path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        write_whole(path, page)
 
 
 def render_page(content: ReportContent) -> str:
@@ -75,12 +74,12 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
     return {
         "content": content,
         "created": _readable_time(content.created),
-        "found": found,
         "verdict": verdict_sentence(found),
-        "paper_verdict": "" if found.verdict is None else paper_verdict_sentence(found),
-        "holding_facts": holding_facts(content.capacity, content.holding),
-        "capacity_remark": "" if content.capacity is None else content.capacity.explanation,
-        "holding_said": "" if content.holding is None else holding_sentence(content.holding),
+        "paper_verdict": "" if found.verdict is None else omega_verdict_sentence(found),
+        "retention_facts": retention_facts(content.capacity, content.retention),
+        "capacity_remark": "" if content.capacity is None else content.capacity.remark,
+        "retention_plot": _retention_plot(content.retention),
+        "retention_said": "" if content.retention is None else retention_sentence(content.retention),
         "amount_said": ""
         if content.amount is None or not found.is_open_container
         else amount_text(content.amount),
@@ -99,6 +98,13 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         **_motion_data(content),
         **_reconstruction_data(content),
     }
+
+
+def _retention_plot(retention: Retention | None) -> dict[str, str] | None:
+    """The curve; none where nothing was loaded that could leave."""
+    if retention is None or retention.n_load == 0:
+        return None
+    return _both(retention_plot(retention), retention_plot(retention, dark=True))
 
 
 def _omega_data(found: Containability) -> dict[str, Any]:

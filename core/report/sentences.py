@@ -1,15 +1,27 @@
-"""The result in plain sentences, the same wherever it is told."""
+"""The result in plain sentences, the same in the report, the terminal and the window."""
 
 from __future__ import annotations
 
 from math import degrees
+from typing import TYPE_CHECKING
 
-from core.imagination.results import Containability, PourChoice, PourGrid
-from core.imagination.risk.results import PourRisk
+from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
 from core.imagination.verdict import Verdict
 
+if TYPE_CHECKING:
+    from core.motion.pour.feasibility import PourMotions
+    from core.session.operator_choice import OperatorChoice
+
 MM = 1000.0
+NO_POURS = "No pours were imagined because the object is not an open container."
 _NO_BREAK = "\N{NO-BREAK SPACE}"
+
+
+def verdict_words(is_open_container: bool | None) -> str:
+    """Return the verdict in two or three words; None: there is none yet."""
+    if is_open_container is None:
+        return "No verdict yet"
+    return "Open container" if is_open_container else "Not a container"
 
 
 def verdict_sentence(containability: Containability) -> str:
@@ -21,8 +33,58 @@ def verdict_sentence(containability: Containability) -> str:
     return f"{verdict}: {_stayed(containability)} (Omega {omega}, the threshold is {threshold})."
 
 
+def verdict_summary(
+    is_open_container: bool | None,
+    omega: float | None,
+    omega_threshold: float | None,
+    capacity_share: float | None = None,
+    capacity_threshold: float | None = None,
+) -> str:
+    """Say the same from what a list of sessions knows, where neither the counts nor the verdict are at hand.
+
+    Args:
+        is_open_container: the verdict.
+        omega: Omega; None: nothing was imagined yet.
+        omega_threshold: Omega_thr.
+        capacity_share: what the object holds as a share of its convex hull; None if Omega decided.
+        capacity_threshold: above which it is a container.
+    """
+    if is_open_container is None or omega is None or omega_threshold is None:
+        return f"{verdict_words(None)}: nothing has been imagined."
+    verdict = verdict_words(is_open_container)
+    if capacity_share is not None and capacity_threshold is not None:
+        return (
+            f"{verdict}: it holds {percent(capacity_share)} of its convex hull; "
+            f"a container holds more than {percent(capacity_threshold)}."
+        )
+    return f"{verdict}: {percent(omega)} of the candies stayed; in a container more than " + (
+        f"{percent(omega_threshold)} stay."
+    )
+
+
+def verdict_reason(containability: Containability, n_on_top: int) -> str:
+    """Give the paper's verdict; if it decides, what had to stay, what did, and where the others are.
+
+    `n_on_top` lie on the object, not in it.
+    """
+    found = containability
+    if found.verdict is not None:
+        said = omega_verdict_sentence(found)
+        if found.is_open_container or not n_on_top:
+            return said
+        return f"{said} {n_on_top} lie on top, with no wall around them."
+    needed = f"More than {percent(found.omega_threshold)} of the candies have to stay inside;"
+    if found.is_open_container:
+        return f"{needed} {percent(found.omega)} did."
+    did = f"not one of the {found.n_drop} did." if found.n_in == 0 else f"only {percent(found.omega)} did."
+    others = "fell past it or rolled off."
+    if n_on_top:
+        return f"{needed} {did} {n_on_top} lie on top, with no wall around them; the others {others}"
+    return f"{needed} {did} The others {others}"
+
+
 def capacity_text(verdict: Verdict) -> str:
-    """Say what an object holds against its own size; of what is no container also when that leaves."""
+    """Say what an object holds for its size; of what is not a container also when that leaves it."""
     needed = f"a container holds more than {100 * verdict.threshold:.0f}{_NO_BREAK}%"
     if verdict.n_candies < 0.5:
         return f"it holds no candy; {needed} of its convex hull"
@@ -35,12 +97,12 @@ def capacity_text(verdict: Verdict) -> str:
     return f"{held}, and tilted by more than {degrees(verdict.holds_rad):.0f} degrees it loses candies"
 
 
-def paper_verdict_sentence(containability: Containability) -> str:
-    """Say what the paper's rule says: Omega against its threshold."""
+def omega_verdict_sentence(containability: Containability) -> str:
+    """Give the verdict by Omega against its threshold (Sec. III-A), with these candies and this drop."""
     omega, threshold = omega_texts(containability)
-    verdict = "an open container" if containability.exceeds_omega else "no open container"
+    verdict = "an open container" if containability.exceeds_omega else "not an open container"
     return (
-        f"By the paper's rule {verdict}: {_stayed(containability)} of those dropped over all of it "
+        f"By Omega {verdict}: {_stayed(containability)} of those dropped all over it "
         f"(Omega {omega}, the threshold is {threshold})."
     )
 
@@ -63,9 +125,9 @@ def pours_sentence(containability: Containability, grid: PourGrid | None, choice
     if grid is not None and choice is not None:
         return choice_sentence(grid, choice)
     if not containability.is_open_container:
-        return "No pours were imagined because the object is no open container."
+        return NO_POURS
     if grid is None:
-        return "No pours were imagined yet: the run ended before them; run the same command to continue."
+        return "The pours have not been imagined yet: the run ended before them."
     return "Pours were imagined but none was chosen."
 
 
@@ -73,13 +135,13 @@ def tries_sentence(risk: PourRisk, i: int, j: int) -> str:
     """Say how often a pour was tried, and how sure it is to spill nothing."""
     n, clean = int(risk.n_tries[i, j]), int(risk.n_clean[i, j])
     if n == 1:
-        return "Tried once, without errors of the set-up" + ("." if clean else f": {_spilled(risk, i, j)}.")
+        return "Tried once, without set-up errors" + ("." if clean else f": {_spilled(risk, i, j)}.")
     bound = f"{100 * risk.clean_at_least[i, j]:.0f}"
     sure = f"so it spills nothing in at least {bound}{_NO_BREAK}% of pours (95{_NO_BREAK}% sure)"
     if clean == n:
-        return f"Tried {n} times, with errors of the set-up: nothing was spilled, {sure}."
+        return f"Tried {n} times, with set-up errors: nothing was spilled, {sure}."
     return (
-        f"Tried {n} times, with errors of the set-up: nothing was spilled in {clean} of them, "
+        f"Tried {n} times, with set-up errors: nothing was spilled in {clean} of them, "
         f"{_spilled(risk, i, j)} on average, {sure}."
     )
 
@@ -88,11 +150,42 @@ def risk_sentence(grid: PourGrid, risk: PourRisk, choice: PourChoice, paper: Pou
     """Say how sure the chosen pour is, and why it is not the paper's where it is another one."""
     said = tries_sentence(risk, choice.i, choice.j)
     if (choice.i, choice.j) == (paper.i, paper.j):
-        return f"{said} The paper's rule chooses the same."
+        return f"{said} The largest P alone (the paper's choice) is there, too."
     n, clean = risk.n_tries[paper.i, paper.j], risk.n_clean[paper.i, paper.j]
     return (
-        f"{said} The paper's rule would pour from {place_text(grid, paper.i, paper.j)}, of whose "
-        f"{n} {'try' if n == 1 else 'tries'} {clean} spilled nothing."
+        f"{said} By P alone (the paper's choice) it would be from {place_text(grid, paper.i, paper.j)}, "
+        f"of whose {n} {'try' if n == 1 else 'tries'} {clean} spilled nothing."
+    )
+
+
+def motion_sentence(motions: PourMotions, grid: PourGrid) -> str:
+    """Say how many pours the arm can make, and whether that changed the choice and why."""
+    choice, free = motions.choice, motions.free_choice
+    n = len(motions.pours)
+    if choice is None:
+        return f"The arm can make none of the {n} pours: {motions.at(free.i, free.j).reason}"
+    said = f"The arm can make {motions.n_feasible} of the {n} pours"
+    if not motions.is_changed:
+        return f"{said}, the chosen one among them."
+    tries = "" if motions.risk is None else f" {tries_sentence(motions.risk, choice.i, choice.j)}"
+    return (
+        f"{said}. The best by imagination alone, from {place_text(grid, free.i, free.j)}, is not "
+        f"among them: {motions.at(free.i, free.j).reason} "
+        f"So it pours from {place_text(grid, choice.i, choice.j)}.{tries}"
+    )
+
+
+def operator_sentence(operator: OperatorChoice, grid: PourGrid, program: PourChoice | None) -> str:
+    """Say what a person chose and why, and what the program would choose."""
+    if program is None:
+        else_chosen = "none"
+    elif (program.i, program.j) == (operator.i, operator.j):
+        else_chosen = "the same"
+    else:
+        else_chosen = place_text(grid, program.i, program.j)
+    return (
+        f"Chosen by the operator, from {place_text(grid, operator.i, operator.j)}: "
+        f"{operator.reason.rstrip('.')} (the program would choose {else_chosen})."
     )
 
 
@@ -106,7 +199,7 @@ def place_text(grid: PourGrid, i: int, j: int) -> str:
 
 
 def omega_texts(containability: Containability) -> tuple[str, str]:
-    """Return Omega and its threshold with two decimals, or with as many as tell them apart."""
+    """Return Omega and its threshold with two decimals, or with as many as distinguish them."""
     omega, threshold = containability.omega, containability.omega_threshold
     for decimals in (2, 3, 4):
         texts = f"{omega:.{decimals}f}", f"{threshold:.{decimals}f}"
@@ -120,8 +213,14 @@ def direction_text(angle_rad: float) -> str:
     return f"{round(degrees(angle_rad)) % 360}°"
 
 
+def percent(share: float) -> str:
+    """Return a share in per cent, with decimals where a whole number would hide a small one."""
+    value = 100 * share
+    return f"{value:.2g}{_NO_BREAK}%" if 0 < value < 9.5 else f"{value:.0f}{_NO_BREAK}%"
+
+
 def ratio_text(grid: PourGrid, i: int, j: int) -> str:
-    """Return P of a pour in per cent, with its spread when there are several packings to tell it from."""
+    """Return P of a pour in per cent, with its spread when there are several packings."""
     text = f"{100 * grid.p[i, j]:.0f}"
     return f"{text} ± {100 * grid.p_spread[i, j]:.0f}" if has_spread(grid) else text
 

@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from math import degrees
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from core.imagination.capacity.result import Capacity
-from core.imagination.holding.result import Holding
-from core.imagination.results import PourChoice, PourGrid
-from core.imagination.risk.results import PourRisk
+from core.imagination.results import PourChoice, PourGrid, PourRisk
+from core.imagination.retention.result import Retention
 from core.mesh import TriangleMesh
 from core.mesh_topology import topology
 from core.parameters import Parameters, describe, difference
-from core.report.sentences import direction_text, ratio_text
+from core.report.sentences import MM, direction_text, place_text, ratio_text
 
-if TYPE_CHECKING:  # only its numbers are needed here, not the fusion
+if TYPE_CHECKING:  # only their numbers are needed here, not what computes them
+    from core.motion.pour.feasibility import PourMotions
     from core.reconstruction.result import Reconstruction
+    from core.session.pour_runs import PourRun
 
-MM = 1000.0
 ML = 1e6
 
 
 @dataclass(frozen=True)
 class PourRow:
-    """P of one direction: one text a distance, and their mean, by which directions are compared."""
+    """One direction of the pours: a text for each distance, and one about all of them.
+
+    Attributes:
+        direction: of the pours.
+        cells: one text a distance.
+        last: of all distances together; empty without such a column.
+        chosen: index of the chosen distance; None where another direction was chosen.
+    """
 
     direction: str
     cells: tuple[str, ...]
-    mean: str
+    last: str
     chosen: int | None
 
 
@@ -54,51 +63,69 @@ class TimeRow:
 
 
 def pour_rows(grid: PourGrid, choice: PourChoice | None) -> list[PourRow]:
-    """Return one row a direction."""
-    return [
-        PourRow(
-            direction_text(float(theta_rad)),
-            tuple(ratio_text(grid, i, j) for j in range(grid.p.shape[1])),
-            f"{100 * grid.p[i].mean():.1f}",
-            choice.j if choice is not None and choice.i == i else None,
-        )
-        for i, theta_rad in enumerate(grid.theta_rad)
-    ]
+    """Return P of every pour, and the means, by which directions are compared."""
+    return _rows(grid, choice, lambda i, j: ratio_text(grid, i, j), lambda i: f"{100 * grid.p[i].mean():.1f}")
 
 
 def risk_rows(grid: PourGrid, risk: PourRisk | None, choice: PourChoice | None) -> list[PourRow]:
-    """Return one row a direction: tries that spilled nothing, of all; none without a risk."""
+    """Return the tries that spilled nothing, of all, and the mean spill; none without a risk."""
     if risk is None:
         return []
-    clean, n = risk.n_clean, risk.n_tries
+    clean, n, spilled = risk.n_clean, risk.n_tries, risk.mean_spilled
+    return _rows(
+        grid,
+        choice,
+        lambda i, j: f"{clean[i, j]} of {n[i, j]}",
+        lambda i: f"{(spilled[i] * n[i]).sum() / n[i].sum():.1f}",
+    )
+
+
+def motion_rows(motions: PourMotions, grid: PourGrid) -> list[PourRow]:
+    """Return how long each pour takes and its clearance, or 'no'."""
+
+    def cell(i: int, j: int) -> str:
+        pour = motions.at(i, j)
+        return f"{pour.duration_s:.0f} s, {pour.clearance_m * MM:.0f} mm" if pour.is_feasible else "no"
+
+    return _rows(grid, motions.choice, cell, lambda _: "")
+
+
+def _rows(
+    grid: PourGrid,
+    choice: PourChoice | None,
+    cell: Callable[[int, int], str],
+    last: Callable[[int], str],
+) -> list[PourRow]:
     return [
         PourRow(
             direction_text(float(theta_rad)),
-            tuple(f"{clean[i, j]} of {n[i, j]}" for j in range(clean.shape[1])),
-            f"{(risk.mean_spilled[i] * n[i]).sum() / n[i].sum():.1f}",
+            tuple(cell(i, j) for j in range(len(grid.indent_m))),
+            last(i),
             choice.j if choice is not None and choice.i == i else None,
         )
         for i, theta_rad in enumerate(grid.theta_rad)
     ]
 
 
-def holding_facts(capacity: Capacity | None, holding: Holding | None) -> dict[str, str]:
+def retention_facts(capacity: Capacity | None, retention: Retention | None) -> dict[str, str]:
     """Return how much an object holds, and how firmly, in words; nothing where it was not imagined."""
-    if capacity is None or holding is None:
+    if capacity is None or retention is None:
         return {}
-    tilts = (holding.first_rad, holding.tenth_rad, holding.half_rad)
-    pushes = (holding.first_m_s2, holding.tenth_m_s2, holding.half_m_s2)
-    most = f"more than {degrees(holding.tilt_rad[-1]):.0f}°"
+    tilts = (retention.first_rad, retention.tenth_rad, retention.half_rad)
+    pushes = (retention.first_m_s2, retention.tenth_m_s2, retention.half_m_s2)
+    most = f"more than {degrees(retention.tilt_rad[-1]):.0f}°"
     leaving = [
-        f"{most}" if not np.isfinite(tilt) else f"{degrees(tilt):.0f}°, or a push of {push:.1f} m/s²"
+        most
+        if not np.isfinite(tilt)
+        else f"{degrees(tilt):.0f}°, or a slowly growing acceleration of {push:.1f} m/s²"
         for tilt, push in zip(tilts, pushes, strict=True)
     ]
     fill_mm, rim_mm = MM * capacity.fill_height_m, MM * capacity.rim_height_m
     return {
         "Capacity": f"{capacity.n_candies:.0f} ± {capacity.spread:.0f} candies, {capacity.volume_ml:.0f} ml",
-        "Water it would hold": f"{capacity.geometric_volume_ml:.0f} ml",
-        "Height that candies fill": f"{fill_mm:.0f} of {rim_mm:.0f} mm",
-        f"First of {holding.n_load} candies leaves at": leaving[0],
+        "Water capacity": f"{capacity.geometric_volume_ml:.0f} ml",
+        "Fill height": f"{fill_mm:.0f} of {rim_mm:.0f} mm",
+        f"First of {retention.n_load} candies leaves at": leaving[0],
         "A tenth": leaving[1],
         "Half": leaving[2],
     }
@@ -117,7 +144,7 @@ def object_facts(surface: TriangleMesh, reconstruction: Reconstruction | None) -
         facts |= {
             "Views": f"{len(reconstruction.pose_health.views)}",
             "Platform height": f"{reconstruction.platform_height_m * MM:.1f} mm",
-            "Truncation": f"{reconstruction.truncation_m * MM:.1f} mm",
+            "TSDF truncation": f"{reconstruction.truncation_m * MM:.1f} mm",
         }
     return facts
 
@@ -127,10 +154,10 @@ def health_sentence(reconstruction: Reconstruction) -> str:
     health = reconstruction.pose_health
     mean_m, sd_m, tilt_rad = health.mean_height_m, health.sd_height_m, health.largest_tilt_rad
     if mean_m is None or sd_m is None or tilt_rad is None:
-        return "Too few views see the table to tell how well the poses agree."
+        return "Too few views see the table to measure how well the poses agree."
     return (
         f"The views see the table at {mean_m * MM:.1f} ± {sd_m * MM:.1f} mm, tilted by up to "
-        f"{degrees(tilt_rad):.1f}°. With perfect poses all would see it at one height, and level."
+        f"{degrees(tilt_rad):.1f}°. With perfect poses all would see it level and at the same height."
     )
 
 
@@ -176,6 +203,35 @@ def time_rows(seconds: dict[str, float]) -> list[TimeRow]:
     """Return one row a stage."""
     longest = max(seconds.values(), default=0) or 1.0
     return [TimeRow(stage, f"{took:.1f}", 100 * took / longest) for stage, took in seconds.items()]
+
+
+def motion_reasons(motions: PourMotions, grid: PourGrid) -> list[tuple[str, str]]:
+    """Return each reason why pours cannot be made, once, and which pours it holds for."""
+    places: dict[str, list[str]] = {}
+    for pour in motions.pours:
+        if not pour.is_feasible:
+            places.setdefault(pour.reason, []).append(place_text(grid, pour.i, pour.j))
+    return [(", ".join(where), reason) for reason, where in places.items()]
+
+
+def run_rows(runs: Sequence[PourRun]) -> list[tuple[str, str, str]]:
+    """Return (time, how it ended and whether a person had chosen it, what was spilled) of each run."""
+    return [
+        (
+            _clock(run.begun),
+            f"{run.sentence} {run.note}".rstrip(),
+            "" if run.is_back_off else _outcome_sentence(run),
+        )
+        for run in runs
+    ]
+
+
+def _outcome_sentence(run: PourRun) -> str:
+    return run.outcome.sentence if run.outcome else "Outcome not entered yet."
+
+
+def _clock(time: str) -> str:
+    return datetime.fromisoformat(time).strftime("%d %B %Y, %H:%M:%S UTC") if time else ""
 
 
 def _value(value: Any, unit: str) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry import FloatArray, transform_points
+from core.parameters.reconstruction import ReconstructionParameters
 
 ColorImage = npt.NDArray[np.uint8]
 DepthImage = npt.NDArray[np.float32]
@@ -77,3 +78,16 @@ class Scan:
     intrinsics: Intrinsics
     platform_height_m: float | None = None
     crop_box: CropBox | None = None
+
+
+RELEASED_BOX = CropBox((-0.30, -0.55, 0.03), (0.18, -0.15, 0.35))
+"""The grid of the released code, in the base frame of the authors' robot."""
+
+
+def crop_box_of(scan: Scan | None, parameters: ReconstructionParameters) -> CropBox:
+    """Return the object's box: the parameters' own, else the scan's, else the released code's."""
+    if parameters.crop_min_m is not None and parameters.crop_max_m is not None:
+        return CropBox(parameters.crop_min_m, parameters.crop_max_m)
+    if scan is not None and scan.crop_box is not None:
+        return scan.crop_box
+    return RELEASED_BOX

@@ -1,4 +1,4 @@
-"""Which of an amount's cups a run poured, and which comes next: told by the runs that were made already."""
+"""Which of an amount's cups a run poured, and which comes next, by the runs that were made already."""
 
 from __future__ import annotations
 

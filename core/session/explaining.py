@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 
 _FULL = {errno.ENOSPC, errno.EDQUOT}
 _FORBIDDEN = {errno.EROFS, errno.EACCES, errno.EPERM}
@@ -25,22 +25,22 @@ def explained(folder: Path) -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        sentence = _sentence(error, folder)
-        if sentence is None:
+        known = _known(error, folder)
+        if known is None:
             raise
-        raise SessionError(sentence) from error
+        raise known from error
 
 
-def _sentence(error: Exception, folder: Path) -> str | None:
+def _known(error: Exception, folder: Path) -> SessionError | None:
     causes = [cause for cause in _chain(error) if isinstance(cause, OSError)]
     if any(cause.errno in _FULL for cause in causes) or (causes and _is_full(folder)):
-        return (
-            f"The disk that holds {folder} is full: free some space and run the same command again; "
-            "nothing that was finished before is lost."
+        return SessionError(
+            f"The disk that holds {folder} is full: free some space; nothing that was finished is lost.",
+            Remedy.RUN_AGAIN,
         )
     for cause in causes:
         if cause.errno in _FORBIDDEN and _lies_in(cause.filename, folder):
-            return (
+            return SessionError(
                 f"The folder {folder} cannot be written ({cause.strerror}): make it writable or choose "
                 "another one; nothing that was finished before is lost."
             )

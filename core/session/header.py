@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 from core.files import write_json
-from core.session.digests import RECORD_FILE
-from core.session.record import utc_now
+from core.session.record import RECORD_FILE, utc_now
 
 FORMAT = 1
 HEADER_FILE = "session.json"
@@ -73,6 +72,7 @@ def _read_table(path: Path) -> dict[str, Any]:
 
 def _damaged(path: Path, reason: str) -> SessionError:
     return SessionError(
-        f"{path} is damaged ({reason}); delete this one file and run the same command again: "
-        "the stages beside it are kept and a new one is written."
+        f"{path} is damaged ({reason}); delete this one file: the stages beside it are kept and a new one is "
+        "written.",
+        Remedy.RUN_AGAIN,
     )

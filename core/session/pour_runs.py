@@ -27,7 +27,7 @@ class Outcome:
         n_candies: in the cup before; none if nobody counted.
         n_spilled: beside the object; none if nobody counted.
         remarks: in the words of who saw it.
-        is_simulated: whether physics told, and nobody saw it.
+        is_simulated: whether it was simulated, and nobody saw it.
         facts: more numbers, as plain JSON.
     """
 
@@ -51,7 +51,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class PourRun:
-    """One run, as its folder tells it.
+    """One run, read from its folder.
 
     Attributes:
         folder: that holds it.
@@ -112,7 +112,7 @@ class PourRun:
         stops = [event for event in self.events if event["kind"] == "stopped"]
         if not stops:
             return "The run ended without a word: the program was ended while the arm moved."
-        during = [event["name"] for event in self.events if event["kind"] == "move"]
+        during = [event.get("sentence", "").split(":")[0] for event in self.events if event["kind"] == "move"]
         where = f" during '{during[-1]}'" if during else " before the first move"
         return f"Stopped{where}: {stops[-1]['sentence']}"
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import platform
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -13,12 +15,12 @@ from typing import Any
 
 from core.errors import SessionError
 from core.files import read_json, write_json
-from core.session.digests import RECORD_FILE, file_sizes, folder_digest
 
 _PACKAGES = {
     "poursight": ("poursight",),
     "numpy": ("numpy",),
     "pybullet": ("pybullet",),
+    "mujoco-core": ("mujoco-core",),
     "open3d": ("open3d", "open3d-cpu"),
 }
 
@@ -77,6 +79,13 @@ class StageRecord:
         tables = (record.inputs, record.parameters, record.files, record.versions)
         return record if all(isinstance(table, dict) for table in tables) else None
 
+    def is_whole(self, folder: Path) -> bool:
+        """Whether all its files are there, as long as they were: lost and cut ones are noticed cheaply."""
+        try:
+            return all((folder / name).stat().st_size == size for name, size in self.files.items())
+        except OSError:
+            return False
+
 
 def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return parameters as JSON gives them back (tuples become lists), so that old and new compare.
@@ -106,3 +115,34 @@ def _installed_version(packages: tuple[str, ...]) -> str:
         except PackageNotFoundError:
             continue
     return "not installed"
+
+
+RECORD_FILE = "record.json"
+_CHUNK_BYTES = 1 << 20
+
+
+def file_sizes(folder: Path) -> dict[str, int]:
+    """Return `{relative name: bytes}` of a stage's own files, sorted; the record is not one of them."""
+    files = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
+    return {name: files[name].stat().st_size for name in sorted(files) if name != RECORD_FILE}
+
+
+def folder_digest(folder: Path) -> str:
+    """Return the SHA-256, in hex, over the names and contents of a stage's own files.
+
+    Times, owners and the order of creation do not count.
+    """
+    whole = hashlib.sha256()
+    for name in file_sizes(folder):
+        # Both parts have a fixed length, so no two sets of files run together to the same bytes.
+        whole.update(hashlib.sha256(os.fsencode(name)).digest())
+        whole.update(_file_digest(folder / name))
+    return whole.hexdigest()
+
+
+def _file_digest(path: Path) -> bytes:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while chunk := file.read(_CHUNK_BYTES):
+            digest.update(chunk)
+    return digest.digest()

@@ -9,9 +9,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from core.errors import SessionError
+from core.errors import Remedy, SessionError
 from core.session import swapping
-from core.session.digests import file_sizes
 from core.session.explaining import explained
 from core.session.header import HEADER_FILE, Header, has_records
 from core.session.locking import SessionLock
@@ -97,7 +96,8 @@ class Session:
             SessionError: the stage has not been finished yet.
         """
         if self.record(stage) is None:
-            raise SessionError(f"The session {self.path} holds no finished stage '{stage}'; run it first.")
+            sentence = f"The session {self.path} holds no finished stage '{stage}'."
+            raise SessionError(sentence, Remedy.RUN_AGAIN)
         return self.path / stage
 
     def record(self, stage: str) -> StageRecord | None:
@@ -105,7 +105,7 @@ class Session:
         return StageRecord.load(self.path / stage)
 
     def is_fresh(self, stage: str, inputs: Mapping[str, str], parameters: Mapping[str, Any]) -> bool:
-        """Tell whether a stage is what these inputs and parameters would give.
+        """Return whether a stage is what these inputs and parameters would give.
 
         Computed by comparison each time. Lost or cut files are noticed by their sizes: asking is cheap.
 
@@ -115,10 +115,11 @@ class Session:
             parameters: JSON-able values, the seed among them.
         """
         record = self.record(stage)
-        if record is None or record.inputs != dict(inputs) or record.parameters != plain(parameters):
-            return False
-        sizes = file_sizes(self.path / stage)
-        return all(sizes.get(name) == size for name, size in record.files.items())
+        return (
+            record is not None
+            and (record.inputs, record.parameters) == (dict(inputs), plain(parameters))
+            and record.is_whole(self.path / stage)
+        )
 
     @contextmanager
     def writing(

@@ -27,7 +27,7 @@ class OpenNICamera:
 
     Tested with libopenni2 and its own dummy device: loading, finding, reading and converting frames,
     freshness, time-out, refusal of a device that cannot register. Not tested, for want of a camera: that a
-    Carmine accepts the mode, the registration and the mirroring as they are asked for here, and what it does
+    Carmine accepts the mode, the registration and the mirroring as they are requested here, and what it does
     when it is unplugged.
 
     Attributes:
@@ -147,7 +147,7 @@ class _Link:
     def fresh_images(self) -> tuple[npt.NDArray[np.uint16], npt.NDArray[np.uint8]]:
         """Return depth (H, W) in millimetres and colour (H, W, 3); TimeoutError when they do not come.
 
-        The first frame of a stream may have waited for the call and some more were on their way; only what is
+        The first frame of a stream may have waited for the call and some more were in flight; only what is
         newer than these was exposed after the call.
         """
         deadline = time.monotonic() + WAIT_S

@@ -1,23 +1,22 @@
-"""The cell itself: its devices, opened and closed together."""
+"""The cell itself: its devices, opened and closed together, with a camera to scan, without to pour."""
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+import random
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import dataclass, field
 
-from core.errors import InputError
+import numpy as np
+import numpy.typing as npt
+
+from core.errors import InputError, Remedy
 from core.motion.clearance import MotionScene
-from hardware.cameras.openni import OpenNICamera
-from hardware.cameras.realsense import RealSenseCamera
 from hardware.cameras.replay import ReplayCamera
-from hardware.cameras.simulated import SimulatedCamera
-from hardware.cell.arm import real_gripper, real_robot
-from hardware.cell.scene import ARMS, motion_scene
+from hardware.cell.devices import real_arm, real_gripper, scan_devices, tool_output_gripper, ur_robot
+from hardware.cell.scene import motion_scene
 from hardware.cell.settings import CellSettings, Joints
 from hardware.interfaces import Camera, Gripper, Robot
-from hardware.robots.kinematic import KinematicRobot
-from hardware.robots.replay import ReplayRobot
-from hardware.robots.simulated_gripper import SimulatedGripper
+from hardware.simulation.ur_controller.process import ControllerProcess
 from hardware.simulation.world import World
 
 
@@ -63,6 +62,42 @@ class Cell:
         return self.settings.scan.views_rad
 
 
+@dataclass
+class Arm:
+    """An arm and its gripper; entering it connects both, after what they need.
+
+    Attributes:
+        settings: what the cell's file says.
+        robot: the arm.
+        gripper: in its hand.
+        scene: what the arm must not touch.
+        controller: of a simulated arm: runs while the arm is connected; none: a real one.
+    """
+
+    settings: CellSettings
+    robot: Robot
+    gripper: Gripper
+    scene: MotionScene
+    controller: ControllerProcess | None = None
+    _open: ExitStack = field(default_factory=ExitStack, repr=False)
+
+    def __enter__(self) -> Arm:
+        """Connect robot and gripper.
+
+        Raises:
+            DeviceError: one of them is not there or not ready; what was connected before is let go again.
+        """
+        first: AbstractContextManager[object] = self.controller or nullcontext()
+        with ExitStack() as devices:
+            for device in (first, self.robot, self.gripper):
+                devices.enter_context(device)
+            self._open = devices.pop_all()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._open.close()
+
+
 def open_cell(settings: CellSettings, world: World | None = None, seed: int = 0) -> Cell:
     """Build a cell's devices; nothing is connected before it is entered.
 
@@ -72,46 +107,56 @@ def open_cell(settings: CellSettings, world: World | None = None, seed: int = 0)
         seed: of a simulated camera's noise.
 
     Raises:
-        InputError: a simulated cell without a world, or a real one with it.
+        InputError: a simulated cell without a world, a real one with it, or a device of an unknown kind.
     """
     if settings.is_simulated != (world is not None):
+        if settings.is_simulated:
+            raise InputError(
+                f"The {settings.name} is simulated, and no object was chosen for it.", Remedy.CHOOSE_OBJECT
+            )
         raise InputError(
-            f"The {settings.name} is simulated: name the object that stands in it, such as --object mug; "
-            "for a real cell give --cell FILE."
-            if settings.is_simulated
-            else f"The {settings.name} is real: put the object on its platform and leave out --object."
+            f"The {settings.name} is real: it scans the object on its platform, not a chosen one.",
+            Remedy.NO_OBJECT,
         )
-    camera, robot, gripper = _devices(settings, world, seed)
+    camera, robot, gripper = scan_devices(settings, world, seed)
     return Cell(settings, camera, robot, gripper, motion_scene(settings))
 
 
-def _devices(settings: CellSettings, world: World | None, seed: int) -> tuple[Camera, Robot, Gripper]:
-    if world is not None:
-        robot = _twin(settings)
-        noise = None if settings.simulation.is_perfect else settings.simulation.noise
-        simulated = SimulatedCamera(world, robot, settings.camera.pose, noise, seed)
-        return simulated, robot, SimulatedGripper()
-    camera = real_camera(settings)
-    if isinstance(camera, ReplayCamera):
-        return camera, ReplayRobot(camera, settings.camera.pose), SimulatedGripper()
-    if settings.robot.kind == "ur5":
-        arm = real_robot(settings)
-        return camera, arm, real_gripper(settings, arm)
-    return camera, _twin(settings), SimulatedGripper()
+def open_arm(settings: CellSettings, joints_rad: npt.ArrayLike | None = None) -> Arm:
+    """Build a cell's arm and gripper, without a camera; nothing is connected before it is entered.
+
+    A simulated arm is driven as a real one is, through a simulated controller.
+
+    Args:
+        settings: what the cell's file says.
+        joints_rad: (6,) where a simulated arm is at first; at its home without them.
+
+    Raises:
+        InputError: the cell plays a recorded scan, which has no arm, or a device is of an unknown kind.
+    """
+    if settings.robot.kind == "replay":
+        raise InputError(f"The {settings.name} plays back a recorded scan and has no arm.", Remedy.OTHER_CELL)
+    if settings.robot.kind == "simulated":
+        return _open_simulated(settings, joints_rad)
+    arm = real_arm(settings)
+    return Arm(settings, arm, real_gripper(settings, arm), motion_scene(settings))
 
 
-def real_camera(settings: CellSettings) -> Camera:
-    """Build the cell's camera, which is not simulated; nothing is connected before it is entered."""
-    camera = settings.camera
-    if camera.kind == "openni":
-        return OpenNICamera(camera.calibrated_intrinsics)
-    if camera.kind == "replay":
-        return ReplayCamera(camera.replayed)
-    return RealSenseCamera(camera.serial, camera.recording)
-
-
-def _twin(settings: CellSettings) -> KinematicRobot:
-    robot = settings.robot
-    return KinematicRobot(
-        ARMS[robot.model], robot.home_rad, settings.simulation.is_instant, settings.gripper.grasp_pose
+def _open_simulated(settings: CellSettings, joints_rad: npt.ArrayLike | None) -> Arm:
+    robot, simulation = settings.robot, settings.simulation
+    controller = ControllerProcess(
+        robot.model,
+        simulation.controller_version,
+        _loopback_address(),
+        np.asarray(robot.home_rad if joints_rad is None else joints_rad, dtype=float).tolist(),
+        simulation.speed_up,
     )
+    arm = ur_robot(settings, controller.address, f"simulated {robot.model}")
+    gripper = tool_output_gripper(settings.gripper, arm, simulation.speed_up)
+    return Arm(settings, arm, gripper, motion_scene(settings), controller)
+
+
+def _loopback_address() -> str:
+    """One of 16 million; the controller says so if somebody listens there."""
+    pick = random.SystemRandom()
+    return ".".join(["127", *(str(pick.randint(1, 254)) for _ in range(3))])

@@ -12,11 +12,10 @@ from core.errors import PoursightError
 from core.geometry import FloatArray
 from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose
-from hardware.cell.arm import real_robot
-from hardware.cell.cell import open_cell, real_camera
-from hardware.cell.scene import ARMS, motion_scene
-from hardware.cell.settings import CellSettings
-from hardware.errors import RobotError
+from hardware.cell.cell import open_cell
+from hardware.cell.devices import real_arm, real_camera
+from hardware.cell.scene import motion_scene
+from hardware.cell.settings import ARMS, CellSettings
 from hardware.interfaces import Camera
 from hardware.simulation.world import World
 
@@ -44,13 +43,13 @@ def examine_cell(settings: CellSettings) -> Iterator[Finding]:
 
 def _robot(settings: CellSettings) -> Finding:
     robot = settings.robot
-    if robot.kind != "ur5":
+    if not robot.is_real:
         return Finding("robot", f"{robot.kind} {robot.model}")
     subject = f"{robot.model} at {robot.address}"
     try:
-        with real_robot(settings) as arm:
+        with real_arm(settings) as arm:
             state, version = arm.state(), ".".join(map(str, arm.controller_version))
-    except RobotError as error:
+    except PoursightError as error:
         return Finding("robot", subject, str(error))
     modes = f"{state.robot_mode.words}, safety {state.safety_mode.words}"
     return Finding("robot", f"{subject}, controller {version}, {modes}, its kinematics agree")

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.motion.arm_models import UR5, UR5E, ArmModel
-from core.motion.arm_shape import Capsule, arm_shape, capsule_around_box
+from core.motion.arm_models import Capsule, arm_shape, capsule_around_box
 from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
 from core.motion.pour.cell import GRIPPER, PourCell
-from hardware.cell.settings import CellSettings
+from hardware.cell.settings import ARMS, CellSettings
 
-ARMS: dict[str, ArmModel] = {"UR5": UR5, "UR5e": UR5E}
 _TABLE_REACH_M = 1.5
 _TABLE_DEPTH_M = 0.5
 _STANDS_THERE = frozenset({"base", "shoulder", "upper arm"})
-"""The shoulder always turns nearer to the table than the wanted clearance; the elbow answers for the far end
-of the upper arm."""
+"""The shoulder always rotates nearer to the table than the wanted clearance; the elbow answers for the far
+end of the upper arm."""
 
 
 def motion_scene(cell: CellSettings) -> MotionScene:

@@ -1,20 +1,31 @@
-"""What a cell file says: devices, calibration and limits, validated; places are in the robot's base frame."""
+"""The cell file (TOML): devices, calibration and limits, validated; places are in the robot's base frame."""
 
 from __future__ import annotations
 
+import sys
 from math import pi
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, ValidationError, model_validator
 
+from core.errors import InputError
 from core.geometry import FloatArray, rotation_error
-from core.motion.pour.settings import MotionSettings
+from core.motion.arm_models import UR5, UR5E, ArmModel
+from core.motion.pour.cell import MotionSettings
 from core.parameters.fields import OURS, Group, choice, quantity
+from core.resources import RESOURCES
 from core.scan.model import CropBox, Intrinsics
 from hardware.simulation.depth_noise import DepthNoise
 
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+ARMS: dict[str, ArmModel] = {"UR5": UR5, "UR5e": UR5E}
+"""The models that `robot.model` names."""
 _CELL = "the cell's calibration"
 ROTATION_TOLERANCE = 1e-3
 SMALLEST_EDGE_M = 0.01
@@ -38,7 +49,7 @@ _GRASP: tuple[Row, Row, Row, Row] = (
 
 def _refuse_no_pose(name: str, pose: FloatArray) -> None:
     if np.abs(pose[3] - [0, 0, 0, 1]).max() > 0 or rotation_error(pose[:3, :3]) > ROTATION_TOLERANCE:
-        raise ValueError(f"{name} is no pose: its 3x3 part must be a rotation, its last row 0 0 0 1")
+        raise ValueError(f"{name} is not a pose: its 3x3 part must be a rotation, its last row 0 0 0 1")
 
 
 class CameraSettings(Group):
@@ -64,7 +75,7 @@ class CameraSettings(Group):
         (0.18, 0.036, 0.025), "Its housing along its own x, y, z, to be kept clear.", unit="m", source=_CELL
     )
     baseline_m: float = quantity(
-        0.075, "Where its projector stands, along its x.", unit="m", source=_CELL, low=0, high=0.3
+        0.075, "Where its projector is, along its x.", unit="m", source=_CELL, low=0, high=0.3
     )
     min_range_m: float = quantity(
         0.35, "Nearer than this it measures nothing.", unit="m", source=_CELL, low=0, high=2
@@ -120,6 +131,11 @@ class RobotSettings(Group):
         if self.kind == "ur5" and not self.address:
             raise ValueError("a ur5 robot needs 'address', such as \"192.168.0.10\"")
         return self
+
+    @property
+    def is_real(self) -> bool:
+        """Whether a physical arm moves, near which people must take care."""
+        return self.kind not in ("simulated", "replay")
 
 
 class GripperSettings(Group):
@@ -254,13 +270,13 @@ class ScanSettings(Group):
         json_schema_extra={"unit": "rad", "source": _CELL},
     )
     settle_s: float = quantity(
-        0.3, "How long the arm must have stood still before an image.", unit="s", source=OURS, low=0, high=10
+        0.3, "How long the arm must have been at rest before an image.", unit="s", source=OURS, low=0, high=10
     )
     tries: int = quantity(
         3, "How often a view is tried before it is left out.", unit="", source=OURS, low=1, high=20
     )
     min_clearance_m: float = quantity(
-        0.02, "What stays free around the arm on its way.", unit="m", source=OURS, low=0, high=0.2
+        0.02, "Clearance kept around the arm while it moves.", unit="m", source=OURS, low=0, high=0.2
     )
 
 
@@ -313,3 +329,46 @@ class CellSettings(Group):
                 "a simulated camera sees nothing from a real robot; set robot.kind to 'simulated'"
             )
         return self
+
+
+CELL_FOLDER = RESOURCES / "cells"
+SIMULATED_CELL = CELL_FOLDER / "simulated.toml"
+
+
+def read_cell(path: Path = SIMULATED_CELL) -> CellSettings:
+    """Read and check a cell file; paths in it count from its folder.
+
+    Raises:
+        InputError: the file cannot be read, or something in it is missing, unknown or impossible.
+    """
+    try:
+        table = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(
+            f"The cell file {path} cannot be read ({error}); {CELL_FOLDER} holds examples to start from."
+        ) from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"The cell file {path} is not valid TOML ({error}); correct it there.") from error
+    _resolve_recording(table, path.parent)
+    try:
+        return CellSettings.model_validate(table)
+    except ValidationError as error:
+        raise InputError(_explain(error, path)) from error
+
+
+def _resolve_recording(table: dict[str, Any], folder: Path) -> None:
+    camera = table.get("camera")
+    if isinstance(camera, dict) and isinstance(camera.get("recording"), str):
+        camera["recording"] = folder / camera["recording"]
+
+
+def _explain(error: ValidationError, path: Path) -> str:
+    """One sentence on the first thing wrong."""
+    first = error.errors()[0]
+    name = ".".join(str(part) for part in first["loc"])
+    if first["type"] == "missing":
+        return f"The cell file {path} lacks '{name}'; compare it with {SIMULATED_CELL}."
+    if first["type"] == "extra_forbidden":
+        return f"The cell file {path} holds '{name}', which no cell has; correct its spelling or remove it."
+    reason = str(first["msg"]).removeprefix("Value error, ")
+    return f"In the cell file {path}, {name or 'something'} is not possible ({reason}); correct it there."

@@ -1,1 +1,1 @@
-"""Carrying out a planned pour: confirm, check, move, watch, stop, recover, and keep all of it."""
+"""Executing a planned pour: check, move, watch, stop, recover, and log all of it."""

@@ -1,11 +1,12 @@
-"""One arm, one object, one pour: plan from where the arm stands, carry out, and back off after a stop.
+"""One arm, one object, one pour: plan from the present configuration, execute, and back off after a stop.
 
-Between the steps a person decides; nothing here asks, and nothing goes on by itself.
+Between the steps a person decides; nothing here asks, and nothing continues by itself.
 """
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,65 +14,41 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import MotionError
-from core.geometry import FloatArray
 from core.motion.pour.cell import PourCell
 from core.motion.pour.checking import check_plan
-from core.motion.pour.plan import PlannedMove, PourPlan
+from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
 from core.motion.pour.planning import plan_pour
 from core.motion.pour.recovery import plan_back_off
-from core.parameters.imagination import PouringParameters
+from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from core.session import explained
 from core.session.pour_runs import next_run_folder
 from hardware.cell import Arm
-from hardware.errors import RobotError
-from hardware.pouring.measuring import driven_pivot_error_m
-from hardware.pouring.procedure import PourProcedure
-from hardware.pouring.run_log import RunLog
+from hardware.errors import DeviceError, RobotError, RobotLost, TrackingLost
+from hardware.interfaces import Move, RobotState
+from hardware.modes import unreadiness
+from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
 PLAN_FOLDER = "plan"
 SENT_FILE = "controller.json"
-"""What a simulated controller received, the newest of it."""
+"""The newest of what a simulated controller received."""
 _NEWEST = 2000
-
-
-@dataclass(frozen=True)
-class PourTarget:
-    """The pour to make: what was imagined and chosen.
-
-    Attributes:
-        object_aabb_m: (2, 3) the object's box in the base frame.
-        i: index of the direction.
-        j: index of the distance.
-        theta_rad: direction of the ray from p_E to the pivot.
-        pivot_m: (3,) r_pivot.
-        pouring: what was imagined with: the cup and the turn.
-        digest: of the imagination it belongs to.
-        note: why it is this one, if a person chose it; goes into the run's log.
-    """
-
-    object_aabb_m: FloatArray
-    i: int
-    j: int
-    theta_rad: float
-    pivot_m: FloatArray
-    pouring: PouringParameters
-    digest: str
-    note: str = ""
-
-    def plan(self, cell: PourCell, start_rad: FloatArray) -> PourPlan:
-        """Plan it from joints (6,).
-
-        Raises:
-            MotionError: why the arm cannot make it.
-        """
-        where = self.i, self.j, self.theta_rad, self.pivot_m
-        return plan_pour(cell, self.object_aabb_m, *where, self.pouring, start_rad)
+STAGE = "pour"
+SAME_PLACE_RAD = 2e-3
+AT_REST_RAD_S = 2e-3
+MOST_TIMES_PLANNED = 10.0
+"""With the speed slider at 10 % a move takes ten times as long; beyond that something holds the arm."""
+PATIENCE_S = 10.0
+REST_WITHIN_S = 1.0
+MAX_AGE_S = 0.5
+MAX_DEVIATION_RAD = 0.06
+"""A servoed arm lags on its path, which is not a deviation from it."""
+_POLL_S = 0.005
 
 
 @dataclass(frozen=True)
 class FreshPlan:
-    """A plan and the moment it was made: it expires."""
+    """A plan, the pour it was made for, and `time.monotonic` of when: it expires."""
 
     plan: PourPlan
     target: PourTarget
@@ -79,7 +56,7 @@ class FreshPlan:
 
 
 class Pouring:
-    """Plans and makes one pour with an arm that is connected.
+    """Plans and executes one pour with a connected arm.
 
     Attributes:
         last_run: folder of the newest run; none before the first.
@@ -98,34 +75,37 @@ class Pouring:
 
     @property
     def is_interrupted(self) -> bool:
-        """Whether a run was stopped with the arm on its way, so that it has to back off first."""
+        """Whether a run was stopped on its path, so that the arm has to back off first."""
         return self._interrupted is not None
 
     def plan(self) -> FreshPlan:
-        """Plan from where the arm stands now.
+        """Plan from the present configuration.
 
         Raises:
-            MotionError: there is no way, a stopped run has to be backed off from first, or the gripper is
-                closed, so that a cup may be in the hand that the plan knows nothing of.
-            RobotError: the arm does not answer.
+            MotionError: there is no plan, a stopped run has to be backed off from first, or the gripper is
+                closed, so that it may hold a cup the plan knows nothing of.
+            RobotError: the arm does not respond.
         """
         if self._interrupted is not None:
-            raise MotionError("The arm was stopped on its way; let it back off before a new pour is planned.")
-        if self._arm.gripper.is_closed:  # what an earlier program left: this one planned no way back for it
             raise MotionError(
-                "The gripper is closed, so a cup may be in the hand; take it out, open the gripper and drive "
-                "the arm home at its panel, then pour anew."
+                "The arm was stopped on its path; let it back off before a new pour is planned."
             )
-        plan = self._target.plan(self._cell, self._arm.robot.state().joints_rad)
+        if self._arm.gripper.is_closed:
+            # left by an earlier program, so that there is no plan to back off along
+            raise MotionError(
+                "The gripper is closed, so it may hold a cup; take it out, open the gripper and drive "
+                "the arm home from its teach pendant, then pour again."
+            )
+        plan = plan_pour(self._cell, self._target, self._arm.robot.state().joints_rad)
         return FreshPlan(plan, self._target, time.monotonic())
 
     def carry_out(self, fresh: FreshPlan) -> Path:
-        """Check once more that all is as planned, then pour; return the run's folder.
+        """Check once more that everything is as planned, then pour; return the run's folder.
 
         Raises:
-            MotionError: the plan has expired or does not stand the check; nothing has moved.
+            MotionError: the plan has expired or fails the check; nothing has moved.
             DeviceError: the arm was stopped; see `PourProcedure.run`.
-            Cancelled: somebody asked to stop; the arm stands.
+            Cancelled: a stop was requested; the arm is at rest.
         """
         self._refuse_outdated(fresh)
         plan = fresh.plan
@@ -147,7 +127,7 @@ class Pouring:
         return folder
 
     def recover(self) -> None:
-        """Make the arm take moves again; it does not move.
+        """Make the arm accept moves again; it does not move.
 
         Raises:
             RobotError: a person has to do something first; the sentence says what.
@@ -155,18 +135,18 @@ class Pouring:
         self._arm.robot.recover()
 
     def plan_back_off(self) -> tuple[PlannedMove, ...]:
-        """Plan the way back from where the arm was stopped: along the checked way, the cup to its station.
+        """Plan backing off from where the arm was stopped: along the checked path, the cup to its station.
 
         Raises:
-            MotionError: the arm was moved away from its planned way meanwhile.
+            MotionError: the arm was moved away from its planned path meanwhile.
         """
-        assert self._interrupted is not None, "asked only after a stop on the way"
+        assert self._interrupted is not None, "requested only after a stop on the path"
         plan, moves, index = self._interrupted
         joints_rad = self._arm.robot.state().joints_rad
         return plan_back_off(plan, moves, index, joints_rad)
 
     def back_off(self, moves: tuple[PlannedMove, ...]) -> Path:
-        """Make the way back; return the run's folder. Raises as `carry_out` does."""
+        """Back off; return the run's folder. Raises as `carry_out` does."""
         assert self._interrupted is not None, "planned before"
         plan = self._interrupted[0]
         folder = next_run_folder(self._session)
@@ -184,7 +164,7 @@ class Pouring:
                 self._interrupted = plan, moves, procedure.current
             raise
         finally:
-            self._keep_what_was_sent(log.folder)
+            self._save_what_was_sent(log.folder)
         self._interrupted = None
 
     def _measure(self, plan: PourPlan, log: RunLog) -> None:
@@ -194,8 +174,8 @@ class Pouring:
         )
         log.event("measured", f"The pivot stayed within {error_m * 1000:.2f} mm.", pivot_error_m=error_m)
 
-    def _keep_what_was_sent(self, folder: Path) -> None:
-        """A simulated controller remembers what it received; a real one keeps its own log."""
+    def _save_what_was_sent(self, folder: Path) -> None:
+        """A simulated controller records what it received; a real one keeps its own log."""
         if self._arm.controller is not None:
             with suppress(RobotError), explained(folder):
                 (folder / SENT_FILE).write_text(self._arm.controller.command(f"log {_NEWEST}") + "\n")
@@ -203,10 +183,159 @@ class Pouring:
     def _refuse_outdated(self, fresh: FreshPlan) -> None:
         target, plan = self._target, fresh.plan
         if fresh.target.digest != target.digest:
-            raise MotionError("The object was imagined anew since this plan was made; plan anew.")
+            raise MotionError("The object was imagined again since this plan was made; plan again.")
         if time.monotonic() - fresh.made_s > self._cell.limits.expires_s:
-            raise MotionError("The plan has expired; plan anew.")
-        check_plan(self._cell, target.object_aabb_m, target.pouring, plan, target.pivot_m, target.theta_rad)
+            raise MotionError("The plan has expired; plan again.")
+        check_plan(self._cell, target, plan)
         apart_rad = np.abs(self._arm.robot.state().joints_rad - plan.start_rad).max()
-        if apart_rad > 2e-3:
-            raise MotionError("The arm was moved since this plan was made; plan anew.")
+        if apart_rad > SAME_PLACE_RAD:
+            raise MotionError("The arm was moved since this plan was made; plan again.")
+
+
+class PourProcedure:
+    """Executes moves that were planned and checked, with a connected arm.
+
+    Attributes:
+        current: index of the present or last move; -1 before the first.
+    """
+
+    def __init__(self, arm: Arm, moves: Sequence[PlannedMove], log: RunLog, reporter: Reporter) -> None:
+        self.current = -1
+        self._arm = arm
+        self._moves = tuple(moves)
+        self._log = log
+        self._reporter = reporter
+        self._total_s = sum(move.trajectory.duration_s for move in self._moves)
+        self._done_s = 0.0
+
+    def run(self) -> None:
+        """Execute all moves. Whatever goes wrong, the arm is stopped, and nothing continues by itself.
+
+        Raises:
+            Cancelled: a stop was requested; the arm is at rest.
+            DeviceError: the robot or the gripper; the sentence says what happened and what to do.
+        """
+        try:
+            self._refuse_elsewhere()
+            for index, move in enumerate(self._moves):
+                self.current = index
+                self._make(move)
+        except BaseException as error:
+            self._stop(error)
+            raise
+        self._log.event("done", "All moves were executed.")
+
+    def _refuse_elsewhere(self) -> None:
+        """The arm must be at rest where the first move starts: plans are made from there."""
+        state = self._ready_state()
+        apart_rad = np.abs(state.joints_rad - self._moves[0].trajectory.start_rad).max()
+        if apart_rad > SAME_PLACE_RAD or np.abs(state.joint_speeds_rad_s).max() > AT_REST_RAD_S:
+            raise TrackingLost(
+                "The arm is not at rest where the plan starts (a joint is "
+                f"{np.degrees(apart_rad):.1f} degrees off); plan again."
+            )
+
+    def _make(self, move: PlannedMove) -> None:
+        self._ready_state()
+        self._log.event(
+            "move",
+            f"{move.label}: {move.trajectory.duration_s:.1f} s.",
+            index=self.current,
+            name=move.name,
+            phase=move.phase.value,
+        )
+        handle = self._arm.robot.follow(move.trajectory)
+        self._watch(handle, move)
+        handle.wait(REST_WITHIN_S)
+        self._log.state(move.name, self._ready_state())
+        self._done_s += move.trajectory.duration_s
+        if move.gripper_after is not None:
+            self._grip(move.gripper_after == "close")
+
+    def _watch(self, handle: Move, move: PlannedMove) -> None:
+        duration_s = move.trajectory.duration_s
+        deadline_s = time.monotonic() + MOST_TIMES_PLANNED * duration_s + PATIENCE_S
+        while not handle.is_done:
+            self._reporter.raise_if_cancelled()
+            state = self._ready_state()
+            self._log.state(move.name, state)
+            refuse_deviation(state, move.trajectory)
+            self._reporter.progress(STAGE, self._done_s + handle.progress * duration_s, self._total_s)
+            if time.monotonic() > deadline_s:
+                raise RobotError(
+                    f"The arm did not finish '{move.label}' in time and was stopped; find out what holds it."
+                )
+            time.sleep(_POLL_S)
+
+    def _ready_state(self) -> RobotState:
+        state = self._arm.robot.state()
+        if state.age_s > MAX_AGE_S:
+            # this computer was suspended since then, and the arm may have reported more
+            state = self._arm.robot.state()
+        refuse_unready(state)
+        return state
+
+    def _grip(self, is_closing: bool) -> None:
+        gripper = self._arm.gripper
+        if is_closing:
+            gripper.close()
+        else:
+            gripper.open()
+        done = "closed" if is_closing else "opened"
+        if gripper.is_closed != is_closing:
+            raise DeviceError(
+                f"The {gripper.name} did not confirm that it {done}; check its cable and its 24 V supply."
+            )
+        self._log.event("gripper", f"The gripper {done}.", is_closed=is_closing)
+
+    def _stop(self, error: BaseException) -> None:
+        with suppress(DeviceError):
+            self._arm.robot.stop()
+        joints_rad = None
+        with suppress(DeviceError):
+            joints_rad = self._wait_for_rest().joints_rad.tolist()
+        self._log.event(
+            "stopped",
+            str(error) or type(error).__name__,
+            error=type(error).__name__,
+            index=self.current,
+            joints_rad=joints_rad,
+        )
+
+    def _wait_for_rest(self) -> RobotState:
+        deadline_s = time.monotonic() + REST_WITHIN_S
+        while True:
+            state = self._arm.robot.state()
+            is_at_rest = np.abs(state.joint_speeds_rad_s).max() < AT_REST_RAD_S
+            if is_at_rest or time.monotonic() > deadline_s:
+                return state
+            time.sleep(_POLL_S)
+
+
+def refuse_unready(state: RobotState) -> None:
+    """Refuse a state in which the arm must not be commanded.
+
+    Raises:
+        RobotError: its kind and sentence say why.
+    """
+    if state.age_s > MAX_AGE_S:
+        raise RobotLost(
+            f"The arm has not reported for {state.age_s:.1f} s; look at it, and check its network cable."
+        )
+    unready = unreadiness(state.safety_mode, state.robot_mode)
+    if unready is not None:
+        raise unready
+
+
+def refuse_deviation(state: RobotState, trajectory: JointTrajectory) -> None:
+    """Refuse a state that is off the path.
+
+    Raises:
+        TrackingLost: a joint is too far from every sample of the path.
+    """
+    deviation_rad = float(np.abs(trajectory.joints_rad - state.joints_rad).max(axis=1).min())
+    if deviation_rad > MAX_DEVIATION_RAD:
+        raise TrackingLost(
+            f"The arm is {np.degrees(deviation_rad):.1f} degrees off its planned path and was stopped; "
+            "find out what holds or pushes it."
+        )

@@ -1,4 +1,4 @@
-"""What happened during one pour, on the disk as it happens: a run is told from it even after a crash."""
+"""What happened during one pour, written as it happens, so that even a crash leaves a readable run."""
 
 from __future__ import annotations
 
@@ -13,13 +13,18 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from core.geometry import FloatArray
+from core.geometry import FloatArray, make_pose
+from core.imagination.cup import pivot_in_cup_m
+from core.motion.arm_models import ArmModel
+from core.motion.kinematics import flange_pose
+from core.motion.pour.plan import Segment
+from core.parameters.bodies import CupParameters
 from core.session import explained
 from core.session.pour_runs import EVENTS_FILE, STATES_FILE
 from hardware.interfaces import RobotState
 
 STATE_EVERY_S = 0.039
-"""25 states a second, by the controller's clock, whose cycles of 8 ms rounding must not make 48."""
+"""25 states per second by the controller's clock: five of its cycles of 8 ms, less some rounding."""
 _COLUMNS = (
     "time_s",
     "move",
@@ -46,7 +51,7 @@ class RunLog:
     """
 
     def __init__(self, folder: Path) -> None:
-        """Begin in a folder, which is made.
+        """Start in a folder, which is created.
 
         Raises:
             SessionError: it cannot be written.
@@ -71,11 +76,11 @@ class RunLog:
         self._states.close()
 
     def event(self, kind: str, sentence: str, **facts: Any) -> None:
-        """Note that something happened; it is on the disk when this returns.
+        """Log an event; it is on the disk when this returns.
 
         Args:
             kind: in a word, such as "move" or "stopped".
-            sentence: for people.
+            sentence: as shown to the user.
             facts: plain JSON values.
         """
         now = datetime.now(timezone.utc).isoformat(timespec="milliseconds")
@@ -85,7 +90,7 @@ class RunLog:
             self._events.flush()
 
     def state(self, move: str, state: RobotState) -> None:
-        """Note a state of the robot, if the last one noted is old enough by the controller's clock."""
+        """Log a state of the robot, if the last one is old enough by the controller's clock."""
         if state.controller_s - self._last_state_s < STATE_EVERY_S:
             return
         self._last_state_s = state.controller_s
@@ -107,7 +112,7 @@ class RunLog:
 
 @dataclass(frozen=True)
 class DrivenStates:
-    """Where the controller said the joints were.
+    """Joint positions that the controller reported.
 
     Attributes:
         times_s: (N,) by the controller's clock.
@@ -118,9 +123,27 @@ class DrivenStates:
     joints_rad: FloatArray
 
 
-def read_states(folder: Path, moves: Collection[str]) -> DrivenStates:
-    """Read the states of a run that were noted during moves of these names."""
+def read_states(folder: Path, segments: Collection[str]) -> DrivenStates:
+    """Read the states of a run that were logged during these segments."""
     with (folder / STATES_FILE).open(encoding="utf-8", newline="") as file:
-        rows = [row for row in csv.DictReader(file) if row["move"] in moves]
+        rows = [row for row in csv.DictReader(file) if row["move"] in segments]
     joints = [[float(row[f"joint_{k}_rad"]) for k in range(1, 7)] for row in rows]
     return DrivenStates(np.array([float(row["time_s"]) for row in rows]), np.array(joints).reshape(-1, 6))
+
+
+def driven_pivot_error_m(
+    folder: Path, arm: ArmModel, T_flange_cup: FloatArray, cup: CupParameters, pivot_m: FloatArray
+) -> float:
+    """Largest displacement of the pivot during the pour rotation of a run, by the reported joints.
+
+    Args:
+        folder: of the run.
+        arm: its kinematics.
+        T_flange_cup: (4, 4) the cup in the hand.
+        cup: its dimensions.
+        pivot_m: (3,) r_pivot in the base frame.
+    """
+    joints_rad = read_states(folder, {Segment.POUR}).joints_rad
+    T_flange_pivot = T_flange_cup @ make_pose(np.eye(3), pivot_in_cup_m(cup))
+    pivots_m = (flange_pose(arm, joints_rad) @ T_flange_pivot)[:, :3, 3]
+    return float(np.linalg.norm(pivots_m - pivot_m, axis=1).max(initial=0.0))

@@ -10,13 +10,12 @@ import numpy.typing as npt
 
 from core.geometry import FloatArray
 from core.motion.arm_models import ArmModel
-from core.motion.kinematics import N_JOINTS, flange_pose, within_limits
+from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
 from hardware.interfaces import RobotState
 from hardware.modes import RobotMode, SafetyMode
-from hardware.robots.joint_motion import JointMotion
-from hardware.robots.trajectory_motion import TrajectoryMotion
+from hardware.robots.joint_motion import JointMotion, TrajectoryMotion, checked_path
 
 _POLL_S = 0.004
 _Motion = JointMotion | TrajectoryMotion
@@ -36,7 +35,7 @@ class KinematicRobot:
         is_instant: bool,
         T_flange_tool: FloatArray | None = None,
     ) -> None:
-        """Stand at `joints_rad` (6,), with the tool frame `T_flange_tool` (4, 4), by default the flange's."""
+        """Begin at rest at `joints_rad` (6,), with a tool frame (4, 4), by default the flange's."""
         self.name = f"simulated {arm.name}"
         self._arm = arm
         self._is_instant = is_instant
@@ -66,12 +65,12 @@ class KinematicRobot:
     def move_joints(
         self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float
     ) -> KinematicMove:
-        """Start to move through configurations (N, 6), the first being where the arm stands.
+        """Start to move through configurations (N, 6), the first being where the arm is.
 
         Raises:
             RobotError: a configuration lies outside the joint limits, or the arm is elsewhere or moving.
         """
-        path = self._checked(path_rad)
+        path = checked_path(self._arm, self.name, path_rad)
         return self._start(JointMotion(path, speed_rad_s, acceleration_rad_s2), path[0])
 
     def follow(self, trajectory: JointTrajectory) -> KinematicMove:
@@ -80,11 +79,11 @@ class KinematicRobot:
         Raises:
             RobotError: as with `move_joints`.
         """
-        self._checked(trajectory.joints_rad)
+        checked_path(self._arm, self.name, trajectory.joints_rad)
         return self._start(TrajectoryMotion(trajectory), trajectory.start_rad)
 
     def stop(self) -> None:
-        """Slow down, stand, and refuse further moves until `recover`."""
+        """Slow down to rest, and refuse further moves until `recover`."""
         with self._lock:
             self._is_stopped = True
             self._brake()
@@ -102,13 +101,6 @@ class KinematicRobot:
             done_rad = motion.at(self._elapsed(time.monotonic()))[2]
             return done_rad / motion.length_rad if motion.length_rad else 1.0
 
-    def _checked(self, joints_rad: npt.ArrayLike) -> FloatArray:
-        path = np.array(joints_rad, dtype=float)
-        is_path = path.ndim == 2 and len(path) > 0 and path.shape[1] == N_JOINTS
-        if not is_path or not within_limits(self._arm, path).all():
-            raise RobotError(f"The {self.name} cannot take these joint angles; plan the motion anew.")
-        return path
-
     def _start(self, motion: _Motion, start_rad: FloatArray) -> KinematicMove:
         with self._lock:
             state = self.state()
@@ -117,7 +109,7 @@ class KinematicRobot:
                     f"The {self.name} was stopped; see that all is well, then recover the robot."
                 )
             if np.abs(state.joint_speeds_rad_s).max() > 0:
-                raise RobotError(f"The {self.name} is still moving; stop it or wait until it stands.")
+                raise RobotError(f"The {self.name} is still moving; stop it or wait until it stops.")
             if np.abs(start_rad - state.joints_rad).max() > 1e-3:
                 raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
             self._begin(motion)
@@ -148,7 +140,7 @@ class KinematicMove:
 
     @property
     def progress(self) -> float:
-        """Share of the way that is done, 0 to 1."""
+        """Share of the path that is done, 0 to 1."""
         self._last = self._robot.progress_of(self._motion) or self._last
         return self._last
 
@@ -171,7 +163,7 @@ class KinematicMove:
                 raise RobotError(f"The {self._robot.name} did not arrive within {timeout_s:g} s; stop it.")
             time.sleep(_POLL_S)
         if progress is None:
-            raise RobotStopped(f"The {self._robot.name} was stopped on its way; plan its motion anew.")
+            raise RobotStopped(f"The {self._robot.name} was stopped before it arrived; plan its motion anew.")
 
     def stop(self) -> None:
         """Stop where the arm is now."""

@@ -22,7 +22,7 @@ class ReplayRobot:
     """
 
     def __init__(self, camera: ReplayCamera, T_flange_camera: FloatArray) -> None:
-        """Stand so that the camera is where the recorded one was."""
+        """Be where the camera is where the recorded one was."""
         self.name = "arm of a recorded scan"
         self._camera = camera
         self._T_camera_flange = invert_pose(T_flange_camera)

@@ -1,16 +1,17 @@
-"""Taking views one after the other: move, stand, shoot, keep, fuse (Sec. IV-A)."""
+"""Taking views one after the other: move, come to rest, take an image, store it, fuse it (Sec. IV-A)."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from threading import Event
 
 import numpy as np
 
-from core.errors import MotionError, StageError
+from core.errors import MotionError, Remedy, StageError
 from core.geometry import FloatArray
-from core.motion.route import RouteSettings, find_route
+from core.motion.joint_path import RouteSettings, find_route
 from core.progress import Reporter
 from core.quality.cavity import empty_coarse_volume, fuse_coarsely
 from core.quality.view_quality import ViewQuality, check_view
@@ -19,12 +20,11 @@ from core.scan.model import Intrinsics, RgbdFrame, Scan
 from hardware.cell import Cell
 from hardware.errors import CameraError, CameraLost, RobotError
 from hardware.interfaces import CameraImage, Move
-from hardware.scanning.control import ScanControl
-from hardware.scanning.keeping import ScanKeeper
+from hardware.scanning.store import ScanStore
 from hardware.scanning.views import PlannedView, ViewRecord, ViewState
 
 STAGE = "scan"
-STANDING_RAD_S = 1e-3
+RESTING_RAD_S = 1e-3
 SAME_PLACE_RAD = 1e-3
 MOST_FAILURES_IN_A_ROW = 3
 MOVE_TIMEOUT_S = 60.0
@@ -34,10 +34,41 @@ FEWEST_VIEWS = 3
 _POLL_S = 0.02
 
 ViewTaken = Callable[[ViewRecord, RgbdFrame | None, TsdfVolume], None]
-"""Told after each view: what became of it, its images (none if it failed), and everything fused so far
+"""Called after each view: what became of it, its images (none if it failed), and everything fused so far
 (`.mesh()` to look at)."""
 ViewsPlanned = Callable[[Sequence[ViewRecord], TsdfVolume], None]
-"""Told before views are taken: what became of each so far, and everything fused so far."""
+"""Called before views are taken: what became of each so far, and everything fused so far."""
+
+
+class ScanControl:
+    """Pauses a scan between two views; safe from any thread."""
+
+    def __init__(self) -> None:
+        self._may_go_on = Event()
+        self._may_go_on.set()
+
+    @property
+    def is_paused(self) -> bool:
+        """Whether the scan waits, or will before its next move."""
+        return not self._may_go_on.is_set()
+
+    def pause(self) -> None:
+        """Let the arm wait after the view it is at."""
+        self._may_go_on.clear()
+
+    def resume(self) -> None:
+        """Go on."""
+        self._may_go_on.set()
+
+    def wait_while_paused(self, reporter: Reporter) -> None:
+        """Return when the scan may go on.
+
+        Raises:
+            Cancelled: on request.
+        """
+        reporter.raise_if_cancelled()
+        while not self._may_go_on.wait(_POLL_S):
+            reporter.raise_if_cancelled()
 
 
 class ScanProcedure:
@@ -51,13 +82,13 @@ class ScanProcedure:
     def __init__(
         self,
         cell: Cell,
-        keeper: ScanKeeper | None,
+        store: ScanStore | None,
         reporter: Reporter,
         control: ScanControl | None = None,
         taken: ViewTaken | None = None,
         planned: ViewsPlanned | None = None,
     ) -> None:
-        """Begin, or continue what the keeper's folder holds; without a keeper nothing goes to the disk.
+        """Begin, or continue what the store's folder holds; without a store nothing goes to the disk.
 
         Raises:
             SessionError: the folder holds another scan, or cannot be written.
@@ -66,7 +97,7 @@ class ScanProcedure:
         self.records: list[ViewRecord] = []
         self.volume = empty_coarse_volume(place.crop_box)
         self._cell = cell
-        self._keeper = keeper
+        self._store = store
         self._reporter = reporter
         self._control = control or ScanControl()
         self._taken = taken
@@ -74,15 +105,15 @@ class ScanProcedure:
         self._frames: dict[str, RgbdFrame] = {}
         self._intrinsics: Intrinsics | None = None
         self._last: RgbdFrame | None = None
-        if keeper is not None:
-            self.records = keeper.begin(place.platform_height_m, place.crop_box)
-            self._recover(keeper)
+        if store is not None:
+            self.records = store.begin(place.platform_height_m, place.crop_box)
+            self._recover(store)
 
     def take(self, views: Sequence[PlannedView]) -> None:
-        """Take the views that are not taken yet; one that fails is left out, and told of.
+        """Take the views that are not taken yet; one that fails is left out and reported.
 
         Raises:
-            Cancelled: somebody asked to stop; the arm stands, and what was taken is kept.
+            Cancelled: on request; the arm is at rest, and what was taken is kept.
             StageError: several views failed one after the other.
             DeviceError: camera or robot are gone.
             SessionError: a view could not be written.
@@ -96,12 +127,12 @@ class ScanProcedure:
             self._control.wait_while_paused(self._reporter)
             self.records[index] = outcome = self._take_one(record.view)
             failures = 0 if outcome.has_image else failures + 1
-            self._tell(outcome)
+            self._report(outcome)
             if failures == MOST_FAILURES_IN_A_ROW:
                 raise StageError(
                     f"{failures} views failed one after the other, the last because: {outcome.problems[0]} "
-                    f"What was taken before (views: {self._n_taken}) is kept; put it right and run the same "
-                    "command."
+                    f"What was taken before (views: {self._n_taken}) is kept; find and fix the cause.",
+                    Remedy.CONTINUE,
                 )
 
     def retake(self, names: Sequence[str]) -> None:
@@ -123,11 +154,11 @@ class ScanProcedure:
                 self.records[index] = outcome
             if outcome.has_image:
                 self._fuse_anew()
-                self._tell(outcome)
+                self._report(outcome)
             else:
                 fate = "keeps its old image" if before.has_image else "is left out again"
                 self._reporter.warn(f"View {name} {fate}: {outcome.problems[0]}")
-                self._note()
+                self._write_records()
 
     def scan(self) -> Scan:
         """Return what was taken.
@@ -138,7 +169,7 @@ class ScanProcedure:
         frames = [self._frames[r.view.name] for r in self.records if r.view.name in self._frames]
         if len(frames) < FEWEST_VIEWS or self._intrinsics is None:
             raise StageError(
-                f"Only {len(frames)} views could be taken; put right what was told and scan again."
+                f"Only {len(frames)} views could be taken; correct what was reported and scan again."
             )
         place = self._cell.settings.place
         return Scan(tuple(frames), self._intrinsics, place.platform_height_m, place.crop_box)
@@ -153,9 +184,9 @@ class ScanProcedure:
     def _n_taken(self) -> int:
         return sum(record.has_image for record in self.records)
 
-    def _recover(self, keeper: ScanKeeper) -> None:
-        """Take over what an interrupted scan left; a view noted but not whole on the disk is taken again."""
-        left = keeper.recover(self.records)
+    def _recover(self, store: ScanStore) -> None:
+        """Continue an interrupted scan; a view recorded but not whole on the disk is taken again."""
+        left = store.recover(self.records)
         if left is not None:
             self._frames = {frame.name: frame for frame in left.frames}
             self._intrinsics = left.intrinsics
@@ -180,7 +211,7 @@ class ScanProcedure:
         for attempt in range(self._cell.settings.scan.tries):
             self._reporter.raise_if_cancelled()
             try:
-                image, pose = self._shoot(reconnect=attempt > 0)
+                image, pose = self._take_image(reconnect=attempt > 0)
             except CameraLost:
                 if attempt + 1 == self._cell.settings.scan.tries:
                     raise
@@ -192,7 +223,7 @@ class ScanProcedure:
             quality = self._judge(frame, image.intrinsics)
             problems = quality.problems
             if not quality.is_useless:
-                return self._keep(view, frame, image.intrinsics, problems)
+                return self._store_view(view, frame, image.intrinsics, problems)
         return ViewRecord(view, ViewState.FAILED, problems)
 
     def _go(self, joints_rad: FloatArray) -> None:
@@ -207,7 +238,7 @@ class ScanProcedure:
         speed, acceleration = settings.robot.joint_speed_rad_s, settings.robot.joint_acceleration_rad_s2
         move = robot.move_joints(path, speed, acceleration)
         self._follow(move)
-        self._stand(joints_rad)
+        self._settle(joints_rad)
 
     def _follow(self, move: Move) -> None:
         """Wait until the move is over; stop the arm when somebody wants the scan to end."""
@@ -218,7 +249,8 @@ class ScanProcedure:
                 if time.monotonic() > deadline_s:
                     raise RobotError(
                         f"The {self._cell.robot.name} did not arrive within {MOVE_TIMEOUT_S:.0f} s and was "
-                        "stopped; look what holds it and run the same command again."
+                        "stopped; find and remove what blocks it.",
+                        Remedy.CONTINUE,
                     )
                 time.sleep(_POLL_S)
             move.wait(_POLL_S)
@@ -229,36 +261,40 @@ class ScanProcedure:
             raise
 
     def _wait_for_rest(self) -> None:
-        """Wait until a stopped arm stands; whoever scans on at once would find it moving."""
+        """Wait until a stopped arm is at rest; a scan that goes on at once would find it moving.
+
+        It is when two looks in succession say so: at the first one it may still come to rest.
+        """
         deadline_s = time.monotonic() + STOP_TIMEOUT_S
-        while np.abs(self._cell.robot.state().joint_speeds_rad_s).max() > STANDING_RAD_S:
-            if time.monotonic() > deadline_s:
+        was_slow = False
+        while time.monotonic() < deadline_s:
+            is_slow = np.abs(self._cell.robot.state().joint_speeds_rad_s).max() <= RESTING_RAD_S
+            if is_slow and was_slow:
                 return
+            was_slow = is_slow
             time.sleep(_POLL_S)
 
-    def _stand(self, joints_rad: FloatArray) -> None:
-        """Wait until the arm has stood still for a while, at its target."""
+    def _settle(self, joints_rad: FloatArray) -> None:
+        """Wait until the arm has been at rest for a while, at its target."""
         settle_s = 0.0 if self._is_instant else self._cell.settings.scan.settle_s
         began_s = since_s = time.monotonic()
         while True:
             state = self._cell.robot.state()
             if time.monotonic() - began_s > MOVE_TIMEOUT_S:
                 raise RobotError(
-                    f"The {self._cell.robot.name} does not come to rest; look what shakes it and run the "
-                    "same command again."
+                    f"The {self._cell.robot.name} does not come to rest; find out what shakes it.",
+                    Remedy.CONTINUE,
                 )
-            if np.abs(state.joint_speeds_rad_s).max() > STANDING_RAD_S:
+            if np.abs(state.joint_speeds_rad_s).max() > RESTING_RAD_S:
                 since_s = time.monotonic()
             elif time.monotonic() - since_s >= settle_s:
                 break
             self._reporter.raise_if_cancelled()
             time.sleep(_POLL_S)
         if np.abs(state.joints_rad - joints_rad).max() > SAME_PLACE_RAD:
-            raise RobotError(
-                f"The {self._cell.robot.name} stands elsewhere than it was sent; look what holds it."
-            )
+            raise RobotError(f"The {self._cell.robot.name} is not where it was sent; see what holds it.")
 
-    def _shoot(self, reconnect: bool) -> tuple[CameraImage, FloatArray]:
+    def _take_image(self, reconnect: bool) -> tuple[CameraImage, FloatArray]:
         """Take an image and the camera's pose (4, 4) by the joints and the hand-eye calibration."""
         cell = self._cell
         if reconnect:
@@ -271,7 +307,7 @@ class ScanProcedure:
         after = cell.robot.state()
         if np.abs(after.joints_rad - before).max() > SAME_PLACE_RAD:
             raise RobotError(
-                "The arm moved while an image was taken; keep hands off and run the same command."
+                "The arm moved while an image was taken; keep hands off the arm.", Remedy.CONTINUE
             )
         return image, after.T_base_flange @ cell.settings.camera.pose
 
@@ -281,23 +317,23 @@ class ScanProcedure:
             frame, intrinsics, place.crop_box, before=self._last, table_height_m=place.table_height_m
         )
 
-    def _keep(
+    def _store_view(
         self, view: PlannedView, frame: RgbdFrame, intrinsics: Intrinsics, problems: tuple[str, ...]
     ) -> ViewRecord:
         record = ViewRecord(view, ViewState.POOR if problems else ViewState.TAKEN, problems)
         self._intrinsics = intrinsics
         self._last = frame
-        if self._keeper is not None:
+        if self._store is not None:
             now = [record if r.view.name == view.name else r for r in self.records]
-            self._keeper.keep(frame, intrinsics, now)
+            self._store.write_view(frame, intrinsics, now)
         is_new = view.name not in self._frames
         self._frames[view.name] = frame
         if is_new:
             fuse_coarsely(self.volume, frame, intrinsics)
         return record
 
-    def _tell(self, outcome: ViewRecord) -> None:
-        self._note()
+    def _report(self, outcome: ViewRecord) -> None:
+        self._write_records()
         for problem in outcome.problems:
             kind = "left out" if not outcome.has_image else "poor"
             self._reporter.warn(f"View {outcome.view.name} is {kind}: {problem}")
@@ -306,9 +342,9 @@ class ScanProcedure:
             frame = self._frames[outcome.view.name] if outcome.has_image else None
             self._taken(outcome, frame, self.volume)
 
-    def _note(self) -> None:
-        if self._keeper is not None:
-            self._keeper.note(self.records)
+    def _write_records(self) -> None:
+        if self._store is not None:
+            self._store.write_records(self.records)
 
     def _fuse_anew(self) -> None:
         """A view cannot be taken out of a volume: fuse all again."""
@@ -319,7 +355,7 @@ class ScanProcedure:
 
     @property
     def _is_instant(self) -> bool:
-        return self._cell.settings.simulation.is_instant and self._cell.settings.robot.kind != "ur5"
+        return self._cell.settings.simulation.is_instant and not self._cell.settings.robot.is_real
 
     @property
     def _is_replay(self) -> bool:

@@ -18,7 +18,6 @@ def simulate_scan(
     seed: int,
     reporter: Reporter,
     noise: DepthNoise | None = None,
-    is_perfect: bool = False,
     cell: CellSettings | None = None,
 ) -> Scan:
     """Put an object on the simulated cell's platform at random and take its views.
@@ -26,18 +25,17 @@ def simulate_scan(
     The images are taken from disturbed poses, the frames carry the undisturbed ones: that is the pose error.
 
     Args:
-        mesh: the object in metres, z up; where its frame lies does not matter.
+        mesh: the object in metres, z up; the origin of its frame does not matter.
         seed: of the placing, the pose errors and the images.
-        reporter: told after each view.
+        reporter: called after each view.
         noise: the camera's; none: the cell's.
-        is_perfect: no noise at all and exactly known poses.
         cell: a simulated one, with its own noise; none: the shipped one.
 
     Raises:
         InputError: the object does not fit into the crop box.
-        Cancelled: somebody asked to stop.
+        Cancelled: on request.
     """
-    settings = simulated_cell(noise, is_perfect) if cell is None else cell
+    settings = simulated_cell(noise) if cell is None else cell
     with open_cell(settings, world_with(mesh, settings.place, seed), seed) as opened:
         procedure = ScanProcedure(opened, None, reporter)
         procedure.take(name_views(settings.scan.views_rad))

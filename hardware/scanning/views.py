@@ -20,7 +20,7 @@ class ViewState(Enum):
 
 @dataclass(frozen=True)
 class PlannedView:
-    """Where the arm is to stand for an image.
+    """Where the arm is to be for an image.
 
     Attributes:
         name: the frame's, such as `frame-000003`.

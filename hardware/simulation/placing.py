@@ -11,7 +11,7 @@ from hardware.cell.settings import PlaceSettings
 from hardware.simulation.world import World
 
 WALL_MARGIN_M = 0.01
-"""Room kept between object and crop box."""
+"""Clearance between object and crop box."""
 MAX_OFFSET_M = 0.03
 _PLACING_DRAWS = 200
 
@@ -30,7 +30,7 @@ def place_on_platform(mesh: TriangleMesh, seed: int, place: PlaceSettings) -> Fl
     """Return `T_base_object` of an object upright on the platform: any yaw, up to 30 mm beside its middle.
 
     Raises:
-        InputError: the object does not fit into the crop box, however it is turned.
+        InputError: the object does not fit into the crop box, however it is rotated.
     """
     random = np.random.default_rng([seed, 0])
     low, high = np.array(place.crop_min_m) + WALL_MARGIN_M, np.array(place.crop_max_m) - WALL_MARGIN_M
@@ -38,15 +38,15 @@ def place_on_platform(mesh: TriangleMesh, seed: int, place: PlaceSettings) -> Fl
     for _ in range(_PLACING_DRAWS):
         rotation = rotation_z(random.uniform(0, 2 * np.pi))
         offset = random.uniform(-MAX_OFFSET_M, MAX_OFFSET_M, size=2)
-        turned = mesh.vertices_m @ rotation.T
-        middle = (turned.min(axis=0) + turned.max(axis=0)) / 2
-        stand = center + np.array([*(offset - middle[:2]), -turned[:, 2].min()])
-        if (turned.min(axis=0) + stand >= low).all() and (turned.max(axis=0) + stand <= high).all():
+        rotated = mesh.vertices_m @ rotation.T
+        middle = (rotated.min(axis=0) + rotated.max(axis=0)) / 2
+        stand = center + np.array([*(offset - middle[:2]), -rotated[:, 2].min()])
+        if (rotated.min(axis=0) + stand >= low).all() and (rotated.max(axis=0) + stand <= high).all():
             return make_pose(rotation, stand)
     size = " x ".join(f"{edge * 1000:.0f}" for edge in mesh.extents_m)
-    room = " x ".join(f"{edge * 1000:.0f}" for edge in (*(high - low)[:2], high[2] - center[2]))
+    space = " x ".join(f"{edge * 1000:.0f}" for edge in (*(high - low)[:2], high[2] - center[2]))
     raise InputError(
-        f"The object of {size} mm does not fit on the platform, whose crop box has room for {room} mm; "
+        f"The object of {size} mm does not fit on the platform, whose crop box has space for {space} mm; "
         "take a smaller object, or enlarge crop_min_m and crop_max_m in the cell file."
     )
 

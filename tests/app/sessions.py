@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 from filelock import FileLock
 
-from app import commands
-from app.jobs.session_work import SessionTask, working_on
-from app.pouring import prepare
-from app.scanning import scan_object
+from app.cli import session_commands
+from app.cli.parameters import NOTHING_CHOSEN
+from app.operations.pouring import prepare
+from app.operations.scanning import scan_object
+from app.operations.session import SessionTask, working_on
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
 from core.workers import WorkerPool
@@ -28,6 +29,7 @@ QUICK = {
     "holding.n_load": 6,
     "holding.tilt_step_rad": 0.2,
     "risk.n_tries": 4,
+    "pouring.n_pour": 20,
 }
 
 
@@ -70,5 +72,5 @@ def copied(made: Path, folder: Path) -> Path:
 
 def make_poured_session(folder: Path, name: str) -> Path:
     """Scan, imagine, pour in the simulated cell, and render the evidence, all with the defaults."""
-    commands.demo(name, folder, commands.Choices(None, [], None), None)
+    session_commands.demo(name, folder, NOTHING_CHOSEN, None)
     return folder

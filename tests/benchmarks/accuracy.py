@@ -28,8 +28,7 @@ from core.scan import Scan
 from hardware.cell import read_cell
 from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.depth_noise import DepthNoise
-from hardware.simulation.objects import builtin_object
-from hardware.simulation.objects.catalogue import _vessel
+from hardware.simulation.objects import _vessel, builtin_object
 from hardware.simulation.placing import place_on_platform, transform_mesh
 
 OBJECTS = ("mug", "bowl", "plate", "vase", "glass", "thin glass", "box", "bottle")
@@ -113,7 +112,7 @@ class Truth:
         seen = high & (self._n_views(points, normals, scan) >= FEWEST_VIEWS)
         self.hidden = 1 - seen.sum() / high.sum()
         self.points = points[seen]
-        self.wall_starts, self.wall_ways = self._walls(points[seen], normals[seen])
+        self.wall_starts, self.wall_directions = self._walls(points[seen], normals[seen])
 
     def judge(self, mesh: TriangleMesh) -> list[float]:
         """All columns but the seconds."""
@@ -122,7 +121,7 @@ class Truth:
         vertices = mesh.vertices_m[mesh.vertices_m[:, 2] > self.floor_m + FOOT_M]
         back = distances_mm(self.scene, vertices)
         basin, has_basin = self._basin(mesh), self.basin.volume_m3 > LEAST_CAPACITY_M3
-        passed = ~(cast(scene, self.wall_starts, self.wall_ways) < 1)
+        passed = ~(cast(scene, self.wall_starts, self.wall_directions) < 1)
         return [
             100 * self.hidden,
             float(forth.mean()),
@@ -140,14 +139,14 @@ class Truth:
     def _n_views(self, points: FloatArray, normals: FloatArray, scan: Scan) -> FloatArray:
         n_views = np.zeros(len(points))
         for frame in scan.frames:
-            way = frame.T_base_camera[:3, 3] - points
-            facing = np.einsum("ij,ij->i", way, normals) / np.linalg.norm(way, axis=1)
-            free = ~np.isfinite(cast(self.scene, points + 1e-4 * normals, way))
+            to_camera = frame.T_base_camera[:3, 3] - points
+            facing = np.einsum("ij,ij->i", to_camera, normals) / np.linalg.norm(to_camera, axis=1)
+            free = ~np.isfinite(cast(self.scene, points + 1e-4 * normals, to_camera))
             n_views += free & (facing > math.cos(STEEPEST_RAD))
         return n_views
 
     def _walls(self, points: FloatArray, normals: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Start and way of rays (N, 3) through every thin wall, from free space to free space."""
+        """Starts and directions of rays (N, 3) through every thin wall, from free space to free space."""
         thickness = cast(self.scene, points - 1e-4 * normals, -normals)
         is_wall = (thickness < THICKEST_WALL_M) & (points[:, 2] < self.mesh.aabb_max_m[2] - RIM_M)
         points, normals, thickness = points[is_wall], normals[is_wall], thickness[is_wall]

@@ -1,4 +1,4 @@
-"""Does the amount that is advised fit? Scanned objects, the pour chosen, its cups poured in the truth world.
+"""Does the recommended amount fit? Its cups are poured in the ground-truth simulation, into scanned objects.
 
 Usage: python -m tests.benchmarks.amounts [--pours N] [--pick ID ...] [--seed N] [--amount safe|half|NUMBER]
    [--workers N] [NAME=VALUE ...]
@@ -13,39 +13,35 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.evaluation.standing import StandingObject, known_surface, stand
-from app.evaluation.truth import pour_cups
+from app.operations.evaluation.ground_truth import ideal_path, pour_once
+from app.operations.evaluation.placed_object import PlacedObject, known_surface, place_object
 from core.collision import CollisionModel, build_collision_model
-from core.errors import PoursightError
+from core.errors import PoursightError, StageError
 from core.evaluation.labels import LabelledObject, read_labels
 from core.geometry import transform_points
-from core.imagination.amount.reason import reason_amount
-from core.imagination.amount.request import parse_amount
-from core.imagination.amount.result import Amount
-from core.imagination.amount.words import amount_sentence
-from core.imagination.body import body_files
+from core.imagination.amount.reasoning import reason_amount
+from core.imagination.amount.result import Amount, amount_sentence, parse_amount
 from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import Capacity
-from core.imagination.choice import choose_pour
-from core.imagination.containability import object_at_rest
-from core.imagination.cup_runs import CupRuns
-from core.imagination.imagine import (
-    WORKER_MODULE,
-    imagine_containability,
-    imagine_grid,
-    imagine_grid_risk,
-)
-from core.imagination.results import Containability, PourChoice
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
+from core.imagination.imagination import WORKER_MODULE
+from core.imagination.packing import CupRuns
+from core.imagination.pours import imagine_pours
+from core.imagination.results import Drop, PourChoice
+from core.imagination.risk import try_pours
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
-from core.parameters.capacity import CapacityParameters
 from core.progress import Reporter
 from core.workers import RunHere, Task, WorkerPool
-from hardware.simulation.pour_outcome.counting import in_object
-from hardware.simulation.pour_outcome.outcome import TableOutcome
+from hardware.simulation.pour_outcome.candies import NO_CANDIES
+from hardware.simulation.pour_outcome.outcome import TableOutcome, in_object
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 from tests.benchmarks.capacity import OBJECTS
+
+CUPS_APART = 1000
+"""Between the seeds of two cups: more than there are seeds."""
 
 
 @dataclass(frozen=True)
@@ -60,51 +56,46 @@ class Row:
 
 
 def measure(
-    one: LabelledObject, seed: int, wish: str, n_pours: int, settings: tuple[tuple[str, str], ...]
+    one: LabelledObject, seed: int, request: str, n_pours: int, settings: tuple[tuple[str, str], ...]
 ) -> Row:
     """Scan an object, reason the amount, choose a pour and make it, in a worker."""
     parameters = apply_settings(Parameters(), {"seed": seed, **dict(settings)})
     mesh = read_mesh(one.mesh, Reporter())
-    standing = stand(mesh, "scan", seed)
-    known = known_surface(mesh, standing, "scan", parameters, Reporter())
-    model = build_collision_model(known, parameters.collision, Reporter())
-    found = imagine_containability(model, parameters)
-    capacity = _capacity(model, found, parameters)
-    amount = reason_amount(parse_amount(wish), capacity, parameters)
+    placed = place_object(mesh, "scan", seed)
+    known = known_surface(mesh, placed, "scan", parameters, Reporter())
+    model = build_collision_model(known.mesh, parameters.collision, Reporter())
+    context = ImaginationContext(parameters, RunHere(), Reporter())
+    drop = imagine_drop(context, model)
+    capacity = imagine_capacity(context, model, drop)
+    amount = reason_amount(parse_amount(request), capacity, parameters)
     if amount.refusal:
         return Row(capacity, amount, 0.0, (), amount.refusal)
     parameters = apply_settings(parameters, {"pouring.n_pour": amount.n_per_cup[0]})
     try:
-        choice, clean_at_least = _chosen(model, found, parameters)
+        choice, clean_at_least = _chosen(context.reading(parameters), model, drop)
         poured = tuple(
-            _poured(standing, choice, parameters, amount.n_per_cup, number) for number in range(n_pours)
+            _poured(placed, choice, parameters, amount.n_per_cup, number) for number in range(n_pours)
         )
     except PoursightError as error:
         return Row(capacity, amount, 0.0, (), str(error))
     return Row(capacity, amount, clean_at_least, poured)
 
 
-def _capacity(model: CollisionModel, found: Containability, parameters: Parameters) -> Capacity:
-    with body_files(object=(model.parts, not model.is_convex)) as files:
-        target = object_at_rest(model, files["object"], parameters)
-        return imagine_capacity(
-            model.surface, target, found, parameters, CapacityParameters(), RunHere(), Reporter()
-        )
-
-
-def _chosen(model: CollisionModel, found: Containability, parameters: Parameters) -> tuple[PourChoice, float]:
+def _chosen(context: ImaginationContext, model: CollisionModel, drop: Drop) -> tuple[PourChoice, float]:
     """The pour, and the bound of its chance to spill nothing."""
-    runs, where = CupRuns(parameters), (RunHere(), Reporter())
-    grid = imagine_grid(model, found, runs, parameters, *where)
-    risk = imagine_grid_risk(model, grid, runs, parameters, *where)
-    choice = choose_pour(grid, parameters.pouring.cup, risk=risk)
+    if drop.footprint is None:
+        raise StageError("No candy stays in it, so there is no footprint to pour at.")
+    runs = CupRuns()
+    grid = imagine_pours(context, model, drop.footprint, runs)
+    tries = try_pours(context, model, grid, runs)
+    choice, risk = tries.choice, tries.risk
     if choice is None:
         raise AssertionError("without an arm every pour is feasible")
     return choice, float("nan") if risk is None else float(risk.clean_at_least[choice.i, choice.j])
 
 
 def _poured(
-    standing: StandingObject,
+    placed: PlacedObject,
     choice: PourChoice,
     parameters: Parameters,
     n_per_cup: tuple[int, ...],
@@ -113,18 +104,23 @@ def _poured(
     """One try: candies spilled from all cups, and how many of them had been inside."""
     settings = OutcomeSettings(seed=parameters.seed)
     pouring, where = parameters.pouring, (RunHere(), Reporter())
-    outcomes = pour_cups(standing, choice, pouring, n_per_cup, settings, number, *where)
-    over = sum(_once_inside(standing, one, settings) for one in outcomes)
+    path = ideal_path(pouring, choice.pivot_m, choice.theta_rad)
+    outcomes: list[TableOutcome] = []
+    for n_candies in n_per_cup:
+        lying = outcomes[-1].lying if outcomes else NO_CANDIES
+        # Every cup has a packing and errors of its own.
+        errors = settings.model_copy(update={"seed": settings.seed + len(outcomes) * CUPS_APART})
+        cup = pouring.model_copy(update={"n_pour": n_candies})
+        outcomes.append(pour_once(placed, path, cup, errors, number, *where, lying))
+    over = sum(_once_inside(placed, one, settings) for one in outcomes)
     return sum(one.n_spilled for one in outcomes), over
 
 
-def _once_inside(standing: StandingObject, outcome: TableOutcome, settings: OutcomeSettings) -> int:
+def _once_inside(placed: PlacedObject, outcome: TableOutcome, settings: OutcomeSettings) -> int:
     """How many of the spilled candies had been inside before: they went over the rim, others beside it."""
     lost = ~(outcome.in_object | outcome.in_cup)
-    stood = TriangleMesh(
-        transform_points(outcome.T_given_stood, standing.true.vertices_m), standing.true.faces
-    )
-    height_m, radius_m = standing.platform.height_m, settings.candy_diameter_m / 2
+    stood = TriangleMesh(transform_points(outcome.T_given_stood, placed.true.vertices_m), placed.true.faces)
+    height_m, radius_m = placed.platform.height_m, settings.candy_diameter_m / 2
     inside = [
         in_object(stood, positions.astype(float), height_m, 0.0, radius_m)
         for positions in outcome.recording.positions_m[:, lost]

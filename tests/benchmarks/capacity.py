@@ -14,15 +14,16 @@ from time import process_time
 
 import numpy as np
 
-from app.evaluation.standing import known_surface, stand
+from app.operations.evaluation.placed_object import known_surface, place_object
 from core.collision import build_collision_model
 from core.evaluation.labels import LabelledObject, read_labels
 from core.imagination.body import body_files
 from core.imagination.capacity.filling import FillPlan, filling_task
 from core.imagination.capacity.imagine import imagine_capacity
-from core.imagination.capacity.packing import BALLS, CANDIES
 from core.imagination.capacity.result import Capacity
 from core.imagination.capacity.stand_in import (
+    BALLS,
+    CANDIES,
     StandIn,
     ball_diameter_m,
     ball_of,
@@ -30,12 +31,13 @@ from core.imagination.capacity.stand_in import (
     particle_volume_m3,
 )
 from core.imagination.capacity.water import find_basin
-from core.imagination.containability import ObjectAtRest, object_at_rest
-from core.imagination.imagine import WORKER_MODULE, imagine_containability
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import ObjectAtRest, imagine_drop
+from core.imagination.imagination import WORKER_MODULE
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
-from core.parameters.capacity import CapacityParameters
+from core.parameters.imagination import CapacityParameters
 from core.progress import Reporter
 from core.workers import RunHere, Task, WorkerPool
 
@@ -57,18 +59,17 @@ class Row:
 
 def measure(one: LabelledObject, seed: int) -> Row:
     """Scan an object, fill it in imagination, and its true mesh with water, in a worker."""
-    parameters, settings = apply_settings(Parameters(), {"seed": seed}), CapacityParameters()
+    parameters = apply_settings(Parameters(), {"seed": seed})
     mesh = read_mesh(one.mesh, Reporter())
-    standing = stand(mesh, "scan", seed)
-    known = known_surface(mesh, standing, "scan", parameters, Reporter())
-    model = build_collision_model(known, parameters.collision, Reporter())
-    found = imagine_containability(model, parameters)
-    with body_files(object=(model.parts, not model.is_convex)) as files:
-        target = object_at_rest(model, files["object"], parameters)
-        began_s = process_time()
-        capacity = imagine_capacity(model.surface, target, found, parameters, settings, RunHere(), Reporter())
-        seconds = process_time() - began_s
-    true = find_basin(standing.true, parameters.particle.diameter_m, 1.0, FINE_POINTS)
+    placed = place_object(mesh, "scan", seed)
+    known = known_surface(mesh, placed, "scan", parameters, Reporter())
+    model = build_collision_model(known.mesh, parameters.collision, Reporter())
+    context = ImaginationContext(parameters, RunHere(), Reporter())
+    drop = imagine_drop(context, model)
+    began_s = process_time()
+    capacity = imagine_capacity(context, model, drop)
+    seconds = process_time() - began_s
+    true = find_basin(placed.true, parameters.particle.diameter_m, 1.0, FINE_POINTS)
     return Row(capacity, true.water_ml, true.candies_ml, seconds)
 
 
@@ -104,13 +105,13 @@ def print_capacities(objects: list[LabelledObject], seed: int) -> None:
 
 
 def cylinder(radius_m: float, height_m: float, sides: int = 32) -> TriangleMesh:
-    """An open cylinder without thickness, standing on the origin."""
+    """An open cylinder without thickness, placed on the origin."""
     angles = np.arange(sides) * 2 * np.pi / sides
     return _open_prism(radius_m * np.column_stack([np.cos(angles), np.sin(angles)]), height_m)
 
 
 def tub(width_m: float, depth_m: float, height_m: float) -> TriangleMesh:
-    """An open box without thickness, standing on the origin."""
+    """An open box without thickness, placed on the origin."""
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) / 2
     return _open_prism(corners * [width_m, depth_m], height_m)
 

@@ -2,8 +2,9 @@
 
 Usage: python -m tests.benchmarks.choices [--seed N] [--pick NAME ...]
 Accuracy is that of the usual threshold and of the one that the calibration objects give. The pours are
-those that the paper's rule chooses from the plain 24, each made three times in the truth world: choosing by
-risk would hide what a choice does to them. Choices that concern the drop alone have no pours of their own.
+those that the paper's rule chooses from the plain 24, each made three times in the ground-truth
+simulation: choosing by risk would hide what a choice does to them. Choices that
+concern the drop alone have no pours of their own.
 Seconds are those of one core, so that other work on the machine hardly counts.
 """
 
@@ -18,19 +19,22 @@ from statistics import fmean
 from time import process_time
 from typing import Any
 
-from app.evaluation.standing import StandingObject, cell_for, stand
-from app.evaluation.truth import pour_into
+from app.operations.evaluation.ground_truth import ideal_path, pour_into
+from app.operations.evaluation.placed_object import PlacedObject, cell_for, place_object
 from core.collision import CollisionModel, build_collision_model
 from core.errors import PoursightError
-from core.evaluation.fitting.threshold import best_threshold
+from core.evaluation.fitting.scores import best_threshold
 from core.evaluation.labels import LabelledObject, read_labels
 from core.evaluation.statistics import Figures
 from core.evaluation.trials import Trial
 from core.imagination.choice import choose_pour
-from core.imagination.cup_runs import CupRuns
-from core.imagination.imagine import WORKER_MODULE, imagine_containability, imagine_grid
-from core.imagination.judging import capacity_share
-from core.imagination.results import Containability
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
+from core.imagination.imagination import WORKER_MODULE
+from core.imagination.judgement import capacity_share
+from core.imagination.packing import CupRuns
+from core.imagination.pours import imagine_pours
+from core.imagination.results import Footprint
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
@@ -79,7 +83,7 @@ CHOICES: dict[str, dict[str, Any]] = {
 def judge(one: LabelledObject, seed: int, names: tuple[str, ...]) -> dict[str, Trial]:
     """Scan an object once and judge it by each choice, in a worker."""
     mesh = read_mesh(one.mesh, Reporter())
-    standing = stand(mesh, "scan", seed)
+    placed = place_object(mesh, "scan", seed)
     scan = simulate_scan(mesh, seed, Reporter(), cell=cell_for(mesh))
     surfaces: dict[object, TriangleMesh] = {}
     trials = {}
@@ -92,15 +96,14 @@ def judge(one: LabelledObject, seed: int, names: tuple[str, ...]) -> dict[str, T
             if key not in surfaces:
                 surfaces[key] = reconstruct(scan, key, Reporter()).mesh
             model = build_collision_model(surfaces[key], parameters.collision, Reporter())
-            found = imagine_containability(model, parameters)
+            context = ImaginationContext(parameters, RunHere(), Reporter())
+            drop = imagine_drop(context, model)
             dropped_s = process_time()
-            share = capacity_share(model, found, parameters, RunHere(), Reporter())
+            share = capacity_share(context, model, drop)
             seconds = {"drop": dropped_s - began_s, "filling": process_time() - dropped_s}
-            trial = replace(
-                trial, n_drop=found.n_drop, n_in=found.n_in, capacity_share=share, seconds=seconds
-            )
-            if one.label == "container" and found.footprint is not None and changes_pours(name):
-                trial = pour(trial, model, found, parameters, standing)
+            trial = replace(trial, n_drop=drop.n_drop, n_in=drop.n_in, capacity_share=share, seconds=seconds)
+            if one.label == "container" and drop.footprint is not None and changes_pours(name):
+                trial = pour(trial, context, model, drop.footprint, placed)
         except PoursightError as error:
             trial = replace(trial, problem=str(error))
         trials[name] = trial
@@ -114,20 +117,21 @@ def changes_pours(name: str) -> bool:
 
 def pour(
     trial: Trial,
+    context: ImaginationContext,
     model: CollisionModel,
-    found: Containability,
-    parameters: Parameters,
-    standing: StandingObject,
+    footprint: Footprint,
+    placed: PlacedObject,
 ) -> Trial:
-    """Imagine the plain 24, choose by the paper's rule, and pour in the truth world."""
-    began_s = process_time()
-    grid = imagine_grid(model, found, CupRuns(parameters), parameters, RunHere(), Reporter())
+    """Imagine the plain 24, choose by the paper's rule, and pour in the ground-truth simulation."""
+    began_s, parameters = process_time(), context.parameters
+    grid = imagine_pours(context, model, footprint, CupRuns())
     seconds = trial.seconds | {"pouring": process_time() - began_s}
     choice = choose_pour(grid, parameters.pouring.cup)
     if choice is None:
         raise AssertionError("without an arm every pour is feasible")
     outcome = OutcomeSettings(seed=parameters.seed)
-    poured = pour_into(standing, choice, parameters.pouring, outcome, N_POURS, RunHere(), Reporter())
+    path = ideal_path(parameters.pouring, choice.pivot_m, choice.theta_rad)
+    poured = pour_into(placed, path, parameters.pouring, [outcome], N_POURS, RunHere(), Reporter())
     return replace(trial, seconds=seconds, spilled=tuple(one.n_spilled for one in poured))
 
 

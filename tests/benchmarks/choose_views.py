@@ -14,11 +14,9 @@ import numpy as np
 
 from core.geometry import FloatArray
 from core.motion.clearance import MotionScene
-from core.motion.joint_path import check_path
-from core.motion.route import path_length
-from core.motion.view_choice import choose_spread_views, coverage
-from core.motion.view_planning import ReachableView, reachable_views
+from core.motion.joint_path import check_path, path_length
 from core.motion.view_tour import Stop, ViewNet, plan_tour
+from core.motion.views import ReachableView, choose_spread_views, coverage, reachable_views
 from tests.core.motion.cell import HOME_RAD, T_FLANGE_CAMERA, TASK, simulated_cell
 from tests.ideal_rings import scan_views
 
@@ -32,10 +30,10 @@ def main() -> None:
     net = ViewNet(scene, views, HOME_RAD, TASK.min_clearance_m)
     stops = plan_tour(net, choose_spread_views(net.views, N_VIEWS))
     _print_rows(scene, stops)
-    _tell("reachable", views)
-    _tell("and from home", net.views)
-    _tell("chosen", [stop.view for stop in stops])
-    _tell_missing(net.views)
+    _report("reachable", views)
+    _report("and from home", net.views)
+    _report("chosen", [stop.view for stop in stops])
+    _report_missing(net.views)
     ideal = np.array([pose[:3, 3] for pose in scan_views(TASK.target_m)]) - TASK.target_m
     print(f"ideal rings: coverage {coverage(_unit(ideal)):.3f}", file=sys.stderr)
     turned = np.degrees(sum(path_length(stop.route_rad) for stop in stops))
@@ -55,21 +53,21 @@ def _print_rows(scene: MotionScene, stops: Sequence[Stop]) -> None:
         print(f"elevation_deg = {view.elevation_deg:.0f}\nazimuth_deg = {view.azimuth_deg:.0f}")
         print(f"distance_m = {view.distance_m:.2f}\nseen_share = {view.seen_share:.2f}")
         print(f"clearance_mm = {view.clearance_m * 1000:.0f}")
-        on_the_way = check_path(scene, stop.route_rad.round(4), 0.0).clearance_m
-        print(f"clearance_on_the_way_mm = {on_the_way * 1000:.0f}")
+        between = check_path(scene, stop.route_rad.round(4), 0.0).clearance_m
+        print(f"clearance_on_the_way_mm = {between * 1000:.0f}")
 
 
 def _toml(values: FloatArray, digits: int = 4) -> str:
     return "[" + ", ".join(f"{value + 0.0:.{digits}f}" for value in values) + "]"
 
 
-def _tell(what: str, views: Sequence[ReachableView]) -> None:
+def _report(what: str, views: Sequence[ReachableView]) -> None:
     covered = coverage(np.array([view.direction for view in views]))
     seen = np.mean([view.seen_share for view in views])
     print(f"{what}: {len(views)} views, coverage {covered:.3f}, box seen {seen:.2f}", file=sys.stderr)
 
 
-def _tell_missing(views: Sequence[ReachableView]) -> None:
+def _report_missing(views: Sequence[ReachableView]) -> None:
     """For each elevation the azimuths that no view of the net has."""
     for elevation in sorted({view.elevation_deg for view in views}):
         there = {view.azimuth_deg for view in views if view.elevation_deg == elevation}

@@ -20,14 +20,14 @@ import numpy as np
 from core.collision import CollisionModel, build_collision_model
 from core.errors import Cancelled
 from core.geometry import transform_points
-from core.imagination.body import body_files
-from core.imagination.containability import drop_task, object_at_rest
-from core.imagination.results import Containability
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
+from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
-from core.workers import Task, WorkerPool
+from core.workers import RunHere, Task, WorkerPool
 
 OBJECTS = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "objects"
 REFERENCE = "exact 960 Hz"
@@ -64,15 +64,13 @@ def measure(mesh: TriangleMesh, settings: dict[str, object]) -> Row:
     started = time.perf_counter()
     model: CollisionModel = build_collision_model(mesh, parameters.collision, Reporter())
     model_s = time.perf_counter() - started
-    with body_files(object=(model.parts, not model.is_convex)) as files:
-        task = drop_task(object_at_rest(model, files["object"], parameters), parameters)
-        started = time.process_time()
-        found: Containability = task.function(*task.arguments)
-        drop_cpu_s = time.process_time() - started
+    started = time.process_time()
+    found = imagine_drop(ImaginationContext(parameters, RunHere(), Reporter()), model)
+    drop_cpu_s = time.process_time() - started
     return Row(found.n_drop, found.n_in, count_through_walls(mesh, found), model_s, drop_cpu_s)
 
 
-def count_through_walls(mesh: TriangleMesh, found: Containability) -> int:
+def count_through_walls(mesh: TriangleMesh, found: Drop) -> int:
     """Count the candies whose centre crossed the surface."""
     import open3d
 

@@ -15,9 +15,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
 
-from app.evaluation.engines.local import LocalEngine
-from app.evaluation.preparing import EvaluationRequest, interleaved, prepared_objects
-from app.evaluation.run import evaluate
+from app.operations.evaluating import EvaluationRequest, evaluate, interleaved, prepared_objects
+from app.operations.evaluation.engine import LocalEngine
 from core.evaluation.evaluation import Evaluation
 from core.evaluation.variants import METHOD, variants_of
 from core.parameters import Parameters, apply_settings
@@ -28,9 +27,9 @@ OBJECTS = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "obje
 
 def main() -> None:
     """Measure and print a row for each number of trials and workers."""
-    asked = arguments()
-    parameters = apply_settings(Parameters(), dict(text.split("=", 1) for text in asked.settings))
-    print(f"--input {asked.input}, {asked.pours} pours into each object judged a container")
+    options = arguments()
+    parameters = apply_settings(Parameters(), dict(text.split("=", 1) for text in options.settings))
+    print(f"--input {options.input}, {options.pours} pours into each object judged a container")
     columns = {
         "trials": 7,
         "workers": 9,
@@ -41,10 +40,10 @@ def main() -> None:
         "failed": 8,
     }
     print("".join(name.rjust(width) for name, width in columns.items()))
-    for count in numbers(asked.counts):
-        for workers in numbers(asked.workers):
+    for count in numbers(options.counts):
+        for workers in numbers(options.workers):
             with TemporaryDirectory(prefix="poursight-cost-") as folder:
-                request = request_of(asked, count, parameters, Path(folder))
+                request = request_of(options, count, parameters, Path(folder))
                 began_s = perf_counter()
                 found = evaluate(request, LocalEngine(workers), Path(folder) / "out", Reporter())
                 print_row(found, workers, perf_counter() - began_s)
@@ -68,16 +67,16 @@ def numbers(text: str) -> list[int]:
 
 
 def request_of(
-    asked: argparse.Namespace, count: int, parameters: Parameters, folder: Path
+    options: argparse.Namespace, count: int, parameters: Parameters, folder: Path
 ) -> EvaluationRequest:
     """Ask for about `count` trials: as many objects as there are, then seeds."""
     whole = EvaluationRequest(
-        asked.objects,
+        options.objects,
         None,
-        asked.input,
+        options.input,
         (0,),
         variants_of([METHOD]),
-        asked.pours,
+        options.pours,
         "default",
         parameters,
     )
@@ -90,12 +89,12 @@ def request_of(
         writer.writerow(("id", "label"))
         writer.writerows((one.labelled.name, one.labelled.label) for one in chosen)
     return EvaluationRequest(
-        asked.objects,
+        options.objects,
         labels,
-        asked.input,
+        options.input,
         tuple(range(n_seeds)),
         whole.variants,
-        asked.pours,
+        options.pours,
         "default",
         parameters,
     )

@@ -8,11 +8,11 @@ from __future__ import annotations
 from time import perf_counter
 
 from core.progress import Reporter
-from hardware.scanning.looking_again import look_again
+from hardware.scanning.next_best_views import take_next_best_views
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
 from tests.core.quality.studio import tube
-from tests.hardware.scanning.test_looking_again import depth_m, scanning
+from tests.hardware.scanning.test_next_best_views import depth_m, scanning
 
 SIZES_M = ((0.03, 0.15), (0.03, 0.2), (0.04, 0.15), (0.04, 0.2), (0.05, 0.2))
 """Opening and depth."""
@@ -28,7 +28,7 @@ def main() -> None:
                 procedure.take(name_views(cell.views_rad))
                 before_m = depth_m(procedure.scan())
                 started_s = perf_counter()
-                n_views = look_again(cell, procedure)
+                n_views = take_next_best_views(cell, procedure)
                 took_s = perf_counter() - started_s
                 after_m = depth_m(procedure.scan())
             print(

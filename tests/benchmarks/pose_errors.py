@@ -16,10 +16,9 @@ import open3d as o3d
 
 from core.collision import build_collision_model
 from core.geometry import FloatArray
-from core.imagination.body import body_files
-from core.imagination.containability import drop_task, object_at_rest
-from core.imagination.imagine import WORKER_MODULE
-from core.imagination.results import Containability
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
+from core.imagination.imagination import WORKER_MODULE
 from core.mesh import TriangleMesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
@@ -27,7 +26,7 @@ from core.quality.cavity import coarse_volume
 from core.quality.measures import ScanQuality
 from core.quality.verdict import assess
 from core.reconstruction.stage import reconstruct
-from core.scan.crop_box import crop_box_of
+from core.scan.model import crop_box_of
 from core.workers import WorkerPool
 from hardware.cell import read_cell
 from hardware.scanning.simulated import simulate_scan
@@ -169,10 +168,7 @@ def height_map_m(mesh: TriangleMesh, floor_m: float) -> FloatArray:
 def omega(mesh: TriangleMesh, parameters: Parameters, pool: WorkerPool) -> float:
     """Imagine the drop onto a mesh and return its containability Omega."""
     model = build_collision_model(mesh, parameters.collision, Reporter())
-    with body_files(object=(model.parts, not model.is_convex)) as files:
-        task = drop_task(object_at_rest(model, files["object"], parameters), parameters)
-        containability: Containability = pool.run([task], "containability", Reporter())[0]
-    return containability.omega
+    return imagine_drop(ImaginationContext(parameters, pool, Reporter()), model).omega
 
 
 def print_row(row: Row) -> None:

@@ -1,7 +1,7 @@
-"""Which pours the simulated cell's arm can make: the data set's containers at random places on the platform.
+"""Which pours the simulated cell's arm can make: the data set's containers at random poses on the platform.
 
 Usage: python -m tests.benchmarks.pour_plans [--poses 5]
-Pivots are those of a footprint in the middle of each object's box, so that nothing needs to be imagined.
+Pivots are those of a footprint in the center of each object's box, so that nothing needs to be imagined.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ import numpy as np
 
 from core.errors import InputError, MotionError
 from core.geometry import FloatArray
-from core.imagination.pouring import indentations_m, pivots_m, pour_directions_rad
+from core.imagination.pours import indentations_m, pivots_m, pour_directions_rad
 from core.imagination.results import Footprint
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
@@ -37,20 +37,20 @@ POURING = PouringParameters()
 
 @dataclass(frozen=True)
 class Judged:
-    """One object at one place: how many pours are feasible, and the figures."""
+    """One object at one pose: how many pours are feasible, and the figures."""
 
     n_feasible: int
     n_directions: int
     took_s: float
     clearance_m: float
-    longest_turn_s: float
+    longest_rotation_s: float
     reason: str
 
 
 def main() -> None:
     """Judge all containers and print a line for each, and the summary."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--poses", type=int, default=5, help="random places of each object")
+    parser.add_argument("--poses", type=int, default=5, help="random poses of each object")
     n_poses = parser.parse_args().poses
     settings = read_cell()
     cell = pour_cell(settings)
@@ -60,7 +60,7 @@ def main() -> None:
         for name, mesh in containers():
             judged = [judge(cell, box, pool) for box in boxes(mesh, settings, n_poses)]
             everything += judged
-            _tell(name, judged)
+            _print_line(name, judged)
     _summarize(everything)
 
 
@@ -73,7 +73,7 @@ def containers() -> Iterator[tuple[str, TriangleMesh]]:
 
 
 def boxes(mesh: TriangleMesh, settings: CellSettings, n_poses: int) -> Iterator[FloatArray]:
-    """The object's axis-aligned box (2, 3) at random places on the platform; none if it does not fit."""
+    """The object's axis-aligned box (2, 3) at random poses on the platform; none if it does not fit."""
     for seed in range(n_poses):
         try:
             pose = place_on_platform(mesh, seed, settings.place)
@@ -85,7 +85,7 @@ def boxes(mesh: TriangleMesh, settings: CellSettings, n_poses: int) -> Iterator[
 
 
 def pours_onto(box_m: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Directions (8,) and pivots (8, 3, 3) for a footprint in the middle of a box (2, 3)."""
+    """Directions (8,) and pivots (8, 3, 3) for a footprint in the center of a box (2, 3)."""
     middle = box_m.mean(axis=0)
     height = box_m[1, 2] + POURING.pivot_height_m
     footprint = Footprint(np.array([*middle[:2], height]), 0.0, np.zeros(2))
@@ -106,11 +106,11 @@ def judge(cell: PourCell, box_m: FloatArray, pool: WorkerPool) -> Judged:
     if not fine:
         return Judged(0, 0, took_s, 0.0, 0.0, pours[0].reason)
     clearance = min(pour.clearance_m for pour in fine)
-    turn = max(pour.turn_s for pour in fine)
-    return Judged(len(fine), len({pour.i for pour in fine}), took_s, clearance, turn, "")
+    rotation = max(pour.turn_s for pour in fine)
+    return Judged(len(fine), len({pour.i for pour in fine}), took_s, clearance, rotation, "")
 
 
-def _tell(name: str, judged: list[Judged]) -> None:
+def _print_line(name: str, judged: list[Judged]) -> None:
     if not judged:
         print(f"{name:22} does not fit", flush=True)
         return
@@ -120,10 +120,10 @@ def _tell(name: str, judged: list[Judged]) -> None:
         f"{np.median([one.took_s for one in judged]):.2f} (most {max(one.took_s for one in judged):.2f}) s"
     )
     nearest = min((one.clearance_m for one in judged if one.n_feasible), default=0.0)
-    turn = max(one.longest_turn_s for one in judged)
+    rotation = max(one.longest_rotation_s for one in judged)
     print(
         f"{name:22} feasible of 24: {numbers}, directions: {directions}, judged in {times}, smallest "
-        f"clearance {nearest * 1000:.1f} mm, longest turn {turn:.2f} s",
+        f"clearance {nearest * 1000:.1f} mm, longest pour rotation {rotation:.2f} s",
         flush=True,
     )
     for pose, one in enumerate(judged):

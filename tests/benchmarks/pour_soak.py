@@ -20,14 +20,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--number", type=int, default=100)
     parser.add_argument("--speed-up", type=float, default=4.0)
-    wishes = parser.parse_args()
+    args = parser.parse_args()
     began_s = time.monotonic()
     print("pours    s   MB (program, children)   files  threads  processes")
-    with tempfile.TemporaryDirectory() as folder, Rig(Path(folder), wishes.speed_up) as rig:
-        for k in range(wishes.number + 1):
+    with tempfile.TemporaryDirectory() as folder, Rig(Path(folder), args.speed_up) as rig:
+        for k in range(args.number + 1):
             if k % EVERY == 0:
                 print(f"{k:5d} {time.monotonic() - began_s:5.0f} {held()}", flush=True)
-            if k < wishes.number:
+            if k < args.number:
                 run = rig.pouring.carry_out(rig.pouring.plan())
                 assert PourRun.load(run).is_done
     print(f"afterwards: {held()}")

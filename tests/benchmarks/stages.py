@@ -16,21 +16,22 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from core.collision import CollisionModel, read_collision_model
-from core.imagination.body import body_files
-from core.imagination.containability import drop_task, object_at_rest
-from core.imagination.cup import cup_parts
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
 from core.imagination.engine import bullet
-from core.imagination.imagine import WORKER_MODULE, imagine
-from core.imagination.packing import packing_task
-from core.imagination.pouring import indentations_m, pivots_m, pour_directions_rad
-from core.imagination.pours import Pour, replay_task
+from core.imagination.imagination import WORKER_MODULE
+from core.imagination.packing import CupRuns
+from core.imagination.pours import (
+    imagine_pours,
+)
 from core.parameters import Parameters, load_preset
+from core.pipeline.in_memory import imagine
 from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
 from core.reconstruction.stage import reconstruct
 from core.scan import read_scan
 from core.session import Session
-from core.workers import Task, WorkerPool
+from core.workers import RunHere, Task, WorkerPool
 
 TRAY = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "real_scan" / "amazon_tray"
 REPEATS = 3
@@ -48,9 +49,8 @@ def main() -> None:
         print(f"\nOmega and 24 pours, preset authors, {pool.workers} workers (pool start not counted):")
         for _ in range(REPEATS):
             started = time.perf_counter()
-            result = imagine(model, authors, pool, Reporter())
-            whole = time.perf_counter() - started
-            print(f"  {whole:.2f} s = {result.containability_s:.2f} drop + {result.pouring_s:.2f} pours")
+            imagine(model, authors, pool, Reporter())
+            print(f"  {time.perf_counter() - started:.2f} s")
         peak = max(pool.run([Task(_peak_memory_mb, ())] * pool.workers, "memory", Reporter()))
         print(f"  largest worker: {peak:.0f} MB")
         print_stages(pool)
@@ -78,24 +78,10 @@ def print_engine_share(model: CollisionModel, parameters: Parameters) -> None:
     bullet.stepSimulation = timed
     print("One process, CPU seconds, preset authors on the authors' convex parts:")
     try:
-        bodies = {
-            "object": (model.parts, not model.is_convex),
-            "cup": (cup_parts(parameters.pouring.cup), False),
-        }
-        with body_files(**bodies) as files:
-            target = object_at_rest(model, files["object"], parameters)
-            drop = drop_task(target, parameters)
-            found = show("drop", lambda: drop.function(*drop.arguments))
-            packing = packing_task(files["cup"], parameters, 0)
-            run = show("cup run", lambda: packing.function(*packing.arguments))
-            thetas = pour_directions_rad(found.footprint, parameters.pouring)
-            pivots = pivots_m(found.footprint, thetas, indentations_m(target.aabb_m, parameters.pouring))
-            pours = [
-                replay_task(target, run, Pour(pivots[i, j], float(thetas[i])).T_world_E, parameters, True)
-                for i in range(len(thetas))
-                for j in range(3)
-            ]
-            show("24 replayed pours", lambda: [task.function(*task.arguments) for task in pours])
+        context, runs = ImaginationContext(parameters, RunHere(), Reporter()), CupRuns()
+        found = show("drop", lambda: imagine_drop(context, model))
+        show("cup run", lambda: runs.of_packings(context))
+        show("24 replayed pours", lambda: imagine_pours(context, model, found.footprint, runs))
     finally:
         bullet.stepSimulation = original
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from math import inf, radians
 from time import process_time
+from typing import Any
 
 from core.imagination.bullet_world import BulletWorld
 from core.imagination.capacity.stand_in import StandIn, ball_of, candy_itself
@@ -26,8 +27,9 @@ def coarser_world(factor: float) -> type[BulletWorld]:
     """Return a world in which a particle may move `factor` times as far as in the program's."""
 
     class CoarserWorld(BulletWorld):
-        def _safe_move_m(self) -> float:
-            return factor * super()._safe_move_m()
+        def __init__(self, *arguments: Any) -> None:
+            super().__init__(*arguments)
+            self._safe_m_s *= factor
 
     return CoarserWorld
 

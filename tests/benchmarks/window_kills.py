@@ -18,7 +18,7 @@ import psutil
 
 from app.library.places import SESSIONS_VARIABLE
 from core.session import Session
-from core.session.digests import folder_digest
+from core.session.record import folder_digest
 
 KILLS = 20
 LONGEST_S = 50.0

@@ -8,10 +8,8 @@ from __future__ import annotations
 import os
 import tempfile
 
-from app.gui.heartbeat import Heartbeat
+from app.gui.headless_check import Heartbeat, Tour, Walk
 from app.gui.main import make_application, open_window
-from app.gui.tour import Tour
-from app.gui.walk import Walk
 from app.library.places import SESSIONS_VARIABLE
 
 

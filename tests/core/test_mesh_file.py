@@ -134,7 +134,7 @@ def test_vertices_that_are_no_numbers(tmp_path: Path) -> None:
     vertices = box().vertices_m.copy()
     vertices[3, 1] = np.nan
     write_mesh(tmp_path / "nan.ply", TriangleMesh(vertices, box().faces))
-    assert "no finite numbers" in refusal(tmp_path / "nan.ply")
+    assert "not finite numbers" in refusal(tmp_path / "nan.ply")
 
 
 def test_faces_that_name_missing_vertices(tmp_path: Path) -> None:
@@ -143,7 +143,8 @@ def test_faces_that_name_missing_vertices(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("size", "word"), [(95.0, "millimetres"), (240.0, "millimetres"), (9.5, "centimetres"), (1e6, "no cell")]
+    ("size", "word"),
+    [(95.0, "millimetres"), (240.0, "millimetres"), (9.5, "centimetres"), (1e6, "larger than any cell")],
 )
 def test_not_in_metres(tmp_path: Path, size: float, word: str) -> None:
     write_mesh(tmp_path / "mug.obj", box(size))
@@ -184,7 +185,7 @@ def test_a_face_against_its_neighbours_is_a_warning(tmp_path: Path) -> None:
     write_mesh(tmp_path / "mixed.ply", TriangleMesh(box().vertices_m, faces))
     listener = Listener()
     read_mesh(tmp_path / "mixed.ply", listener)
-    assert "different sides" in listener.sentences[0]
+    assert "opposite sides" in listener.sentences[0]
 
 
 def test_five_million_faces_are_refused_unread(tmp_path: Path) -> None:

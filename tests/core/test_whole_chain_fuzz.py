@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 
 from core.errors import PoursightError
 from core.mesh import TriangleMesh
+from core.mesh_file import write_ply
 from core.parameters import Parameters, apply_settings
 from core.pipeline.pipeline import Pipeline
-from core.ply import write_ply
 from core.progress import Reporter
 from core.session import Session
 from core.workers import WorkerPool
@@ -22,7 +22,14 @@ QUICK = {
     "containability.rotation_s": 0.05,
     "containability.translation_s": 0.02,
     "pouring.n_pour": 4,
-    "containability.verdict": "omega",
+    "capacity.n_fillings": 1,
+    "capacity.n_aimed": 20,
+    "capacity.lattice_points": 10_000,
+    "holding.n_load": 4,
+    "holding.settle_s": 0.2,
+    "holding.tilt_step_rad": 0.2,
+    "holding.tilt_max_rad": 0.4,
+    "holding.hold_s": 0.05,
     "risk.n_tries": 4,
     "pouring.turn_s": 0.5,
     "evidence.renders": False,
@@ -54,6 +61,7 @@ def meshes(draw):
 parameter_choices = st.fixed_dictionaries(
     {},
     optional={
+        "containability.verdict": st.sampled_from(["capacity", "omega"]),
         "collision.method": st.sampled_from(["exact", "vhacd"]),
         "particle.shape": st.sampled_from(["cylinder", "ellipsoid", "sphere"]),
         "particle.diameter_m": st.floats(0.001, 0.05),

@@ -3,54 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from PySide6.QtCore import QObject, QRunnable, QThreadPool, Signal
+from PySide6.QtCore import QObject, Qt, Signal
 
+from app.gui.remedies import worded
 from core.errors import PoursightError, StageError
 
 R = TypeVar("R")
 
 
-class _Call(QObject, QRunnable):
-    """One call in a thread of the pool."""
+@dataclass(frozen=True, eq=False)
+class _Call:
+    """What is called in the thread, and what is called with its end."""
 
-    ended = Signal(object, object)
-
-    def __init__(self, function: Callable[[], Any]) -> None:
-        QObject.__init__(self)
-        QRunnable.__init__(self)
-        self.setAutoDelete(False)
-        self._function = function
-
-    def run(self) -> None:
-        """Call and tell."""
-        try:
-            result, error = self._function(), None
-        except PoursightError as reason:
-            result, error = None, reason
-        except Exception as fault:  # of the program: told like everything else, so that nobody waits for ever
-            result, error = None, StageError(f"A fault of the program ({type(fault).__name__}: {fault}).")
-        self.ended.emit(result, error)
+    function: Callable[[], Any]
+    done: Callable[[Any], None]
+    failed: Callable[[PoursightError], None] | None
 
 
 class Background(QObject):
-    """Runs calls one by one in a thread; only the newest of each name is told, so a page never goes back.
+    """Runs calls one by one in a thread; only the newest of each name is reported, so a page never goes back.
 
-    Signals: `told` with the sentence of a call that failed and had nobody to hear of it.
+    Signals: `failed` with the sentence of a call that failed and has no handler of its own.
     """
 
-    told = Signal(str)
+    failed = Signal(str)
+
+    _ended = Signal(str, object, object, object)
+    """Name, call, result, error; emitted in the thread, delivered in the window's."""
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._pool = QThreadPool(self)
-        self._pool.setMaxThreadCount(1)
+        # Python's own: a `QRunnable` may be destroyed here while Qt's thread is still inside it.
+        self._thread = ThreadPoolExecutor(1)
         self._newest: dict[str, _Call] = {}
+        self._ended.connect(self._end, Qt.ConnectionType.QueuedConnection)
 
     @property
     def is_idle(self) -> bool:
-        """Whether nothing is under way."""
+        """Whether nothing is queued or running."""
         return not self._newest
 
     def run(
@@ -65,28 +59,38 @@ class Background(QObject):
         Args:
             name: a newer call of the same name replaces an older one, whose result is dropped.
             function: must not touch widgets.
-            done: told the result.
-            failed: told what went wrong; without it `told` says it to the user.
+            done: called with the result.
+            failed: called with what went wrong; without it the signal `failed` reports it.
         """
-        call = _Call(function)
+        call = _Call(function, done, failed)
         self._newest[name] = call
+        self._thread.submit(self._call, name, call)
 
-        def end(result: Any, error: PoursightError | None) -> None:
-            if self._newest.get(name) is not call:
-                return
-            del self._newest[name]
-            if error is None:
-                done(result)
-            elif failed is not None:
-                failed(error)
-            else:
-                self.told.emit(str(error))
+    def _call(self, name: str, call: _Call) -> None:
+        """Run a call, in the thread."""
+        result: Any = None
+        error: PoursightError | None = None
+        try:
+            result = call.function()
+        except PoursightError as reason:
+            error = reason
+        except Exception as fault:  # a bug: reported, so that nobody waits for ever
+            error = StageError(f"Internal error ({type(fault).__name__}: {fault}).")
+        self._ended.emit(name, call, result, error)
 
-        call.ended.connect(end)
-        self._pool.start(call)
+    def _end(self, name: str, call: _Call, result: Any, error: PoursightError | None) -> None:
+        if self._newest.get(name) is not call:
+            return
+        del self._newest[name]
+        if error is None:
+            call.done(result)
+        elif call.failed is not None:
+            call.failed(error)
+        else:
+            self.failed.emit(worded(error))
 
     def forget(self) -> None:
-        """Drop what is under way."""
+        """Drop what is queued, and wait for what runs."""
         self._newest.clear()
-        self._pool.clear()
-        self._pool.waitForDone()
+        self._thread.shutdown(cancel_futures=True)
+        self._thread = ThreadPoolExecutor(1)

@@ -1,18 +1,19 @@
-"""Everything the pages share, made once and handed to each."""
+"""Everything the pages share, made once and handed to each: session, jobs, arm and cell."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, QSettings, QTimer, Signal
 
 from app.gui.desk.arm_link import ArmLink
 from app.gui.desk.background import Background
-from app.gui.desk.cell import CellChoice
 from app.gui.desk.jobs import Jobs
 from app.gui.desk.workspace import Workspace
+from app.gui.remedies import worded
 from app.jobs.arm_work import ArmWork
 from app.jobs.host import Host
 from app.jobs.scan_work import ScanWork
@@ -20,20 +21,23 @@ from app.jobs.session_work import SessionWork
 from app.library.places import new_session_folder
 from core.errors import PoursightError
 
+if TYPE_CHECKING:
+    from hardware.cell.settings import CellSettings
+
 _APART_MS = 1500
+_CELL_KEY = "cell/file"
 
 
 class Desk(QObject):
     """The session, the jobs and the cell.
 
-    Signals: `page_wanted` with the key of a page that somebody asked for; `told` with a sentence for the
-    message bar.
+    Signals: `page_wanted` with the key of a page to show; `message` with a sentence for the message bar.
 
     Attributes:
         workspace: the open session and its parameters.
         jobs: the running job.
         background: for short work in a thread.
-        cell: the cell that is worked with.
+        cell: the cell in use.
         arm: the link to the arm, with STOP.
         session_host: the process that reconstructs and imagines.
         scan_host: the process that scans.
@@ -41,7 +45,7 @@ class Desk(QObject):
     """
 
     page_wanted = Signal(str)
-    told = Signal(str)
+    message = Signal(str)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -55,34 +59,34 @@ class Desk(QObject):
         self.arm_host = self.jobs.make_host(ArmWork, "moves the arm", is_repeatable=False)
         self._hosts: tuple[Host[Any], ...] = (self.session_host, self.scan_host, self.arm_host)
         self.arm = ArmLink(self.arm_host, self.scan_host, self)
-        self.jobs.news.connect(self.arm.hear)
+        self.jobs.event_received.connect(self.arm.handle)
         self.jobs.finished.connect(lambda *_: self.workspace.refresh())
         self.jobs.failed.connect(lambda *_: self.workspace.refresh())
-        self.cell.failed.connect(self.told)
-        self.background.told.connect(self.told)
+        self.cell.failed.connect(self.message)
+        self.background.failed.connect(self.message)
 
     def new_session(self, name: str) -> bool:
-        """Open a new session in the usual place, called after today and `name`; False if that cannot be."""
+        """Open a new session in the usual place, named after today and `name`; False if that cannot be."""
         return self.open_session(new_session_folder(name))
 
     def open_session(self, folder: Path) -> bool:
-        """Open a session, or start one in an empty folder; what is in the way is told and changes nothing."""
+        """Open a session, or start one in an empty folder; if that fails, `message` has the reason."""
         if not self.jobs.is_idle:
-            self.told.emit(
-                self.tr("Work is under way; cancel it, or let it end, before you change the session.")
+            self.message.emit(
+                self.tr("A job is running: cancel it or let it finish before you change the session.")
             )
             return False
         try:
             self.workspace.open(folder)
         except PoursightError as error:
-            self.told.emit(str(error))
+            self.message.emit(worded(error))
             return False
         return True
 
     def prepare(self) -> None:
         """Start the processes, so that the first jobs need not wait for them."""
         for number, host in enumerate(self._hosts):
-            # One after the other, for each imports for a second or two.
+            # One after the other: each is busy importing for a second or two.
             QTimer.singleShot(_APART_MS * number, self, partial(self._open, host))
 
     def _open(self, host: Host[Any]) -> None:
@@ -90,8 +94,64 @@ class Desk(QObject):
             host.open()
 
     def close(self) -> None:
-        """End all work; nothing is left behind."""
+        """End all jobs and processes."""
         self._is_closed = True
         self.arm.close()
         self.jobs.close()
         self.background.forget()
+
+
+class CellChoice(QObject):
+    """The cell the program works with: the simulated one, unless a file was chosen.
+
+    It is read in the background, and the choice is remembered.
+
+    Signals: `changed` when there is another cell; `failed` with a sentence when a file cannot be used, in
+    which case the cell stays what it was.
+
+    Attributes:
+        path: of the file; none for the simulated cell that the program ships.
+        settings: its contents; none until it is read.
+    """
+
+    changed = Signal()
+    failed = Signal(str)
+
+    def __init__(self, background: Background, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.path: Path | None = None
+        self.settings: CellSettings | None = None
+        self._background = background
+
+    @property
+    def is_simulated(self) -> bool:
+        """Whether no real arm moves; true until the file is read, for the program ships a simulated cell."""
+        return self.settings is None or not self.settings.robot.is_real
+
+    def restore(self) -> None:
+        """Use the cell of the last time."""
+        remembered = str(QSettings().value(_CELL_KEY, ""))
+        self.choose(Path(remembered) if remembered else None)
+
+    def choose(self, path: Path | None, then: Callable[[], None] | None = None) -> None:
+        """Read a cell's file and use it, then call `then`; none: the simulated cell."""
+
+        def take(settings: CellSettings) -> None:
+            self.path, self.settings = path, settings
+            QSettings().setValue(_CELL_KEY, "" if path is None else str(path))
+            self.changed.emit()
+            if then is not None:
+                then()
+
+        def refuse(error: PoursightError) -> None:
+            self.failed.emit(worded(error))
+            if self.settings is None and path is not None:  # at the start there must be one
+                self.choose(None)
+
+        self._background.run("cell", partial(_read_cell, path), take, refuse)
+
+
+def _read_cell(path: Path | None) -> CellSettings:
+    from hardware.cell import SIMULATED_CELL, read_cell
+
+    return read_cell(path or SIMULATED_CELL)

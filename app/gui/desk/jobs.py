@@ -1,25 +1,26 @@
-"""The one job that is under way: started here, shown in the bar, cancelled, told of when it ends."""
+"""The one job that runs: started here, shown in the bar, cancelled, reported when it ends."""
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, TypeVar
 
-from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
-from app.gui.desk.inbox import Inbox
+from app.gui.remedies import remedy_words
 from app.jobs.host import Host
-from app.jobs.messages import Failed, FailureKind, Finished, Message, News, Progressed, Warned
+from app.jobs.messages import Event, Failed, FailureKind, Finished, Message, Progressed, Status, Warned
 from app.jobs.service import Service
 
 S = TypeVar("S", bound=Service)
 
 _TICK_MS = 250
 _SOONEST_GUESS_S = 1.0
-"""A guess at the time left needs some time to be worth its ink."""
+"""Earlier, an estimate of the time left would be worthless."""
 
 
 @dataclass
@@ -29,10 +30,12 @@ class RunningJob:
     Attributes:
         title: what it does, such as "Imagine".
         page: key of the page it belongs to.
-        stage: what is under way, by the pipeline's name.
+        start_again: starts the same job once more; none where the arm must be checked first.
+        host: the process that does it.
+        patience_s: how long it may take to stop when cancelled.
+        stage: that runs, by the pipeline's name.
         fraction: of that stage, 0 to 1.
-        is_cancelling: whether somebody asked to stop it.
-        start_again: begins the same job once more; none for those that need another look before.
+        is_cancelling: whether it was cancelled.
     """
 
     title: str
@@ -43,19 +46,18 @@ class RunningJob:
     stage: str = ""
     fraction: float = 0.0
     is_cancelling: bool = False
-    began_s: float = field(default_factory=time.monotonic)
     stage_began_s: float = field(default_factory=time.monotonic)
 
     @property
     def seconds_left(self) -> float | None:
-        """Of the stage under way, by its speed so far; none as long as that is a guess in the dark."""
+        """Of the stage that runs, by its speed so far; none while too little is done to estimate it."""
         spent_s = time.monotonic() - self.stage_began_s
         if self.fraction <= 0.02 or spent_s < _SOONEST_GUESS_S:
             return None
         return spent_s * (1 - self.fraction) / self.fraction
 
     def progress(self, message: Progressed) -> None:
-        """Take over how far it is."""
+        """Update stage and fraction."""
         if message.stage != self.stage:
             self.stage, self.stage_began_s = message.stage, time.monotonic()
         self.fraction = message.done / message.total if message.total else 0.0
@@ -65,7 +67,7 @@ class Jobs(QObject):
     """Runs one job at a time in one of the hosts.
 
     Signals carry: `started` and `progressed` the `RunningJob`; `finished` it and the result; `failed` it and
-    the `Failed`; `warned` a sentence; `news` a payload, of a job or of a service by itself.
+    the `Failed`; `warned` a sentence; `event_received` an event's payload, of a job or of an idle service.
     """
 
     started = Signal(object)
@@ -73,7 +75,7 @@ class Jobs(QObject):
     finished = Signal(object, object)
     failed = Signal(object, object)
     warned = Signal(str)
-    news = Signal(object)
+    event_received = Signal(object)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -81,19 +83,19 @@ class Jobs(QObject):
         self._hosts: list[Host[Any]] = []
         self._once_only: set[Host[Any]] = set()
         self._then: Callable[[Any], None] | None = None
-        self._inbox = Inbox(self._hear, self)
+        self._inbox = Inbox(self._handle, self)
         self._tick = QTimer(self, interval=_TICK_MS)
-        self._tick.timeout.connect(self._tell_progress)
+        self._tick.timeout.connect(self._emit_progress)
         self._enforce = QTimer(self, singleShot=True)
         self._enforce.timeout.connect(self._kill)
 
     def make_host(self, kind: type[S], name: str, *, is_repeatable: bool = True) -> Host[S]:
-        """Make a host whose messages come here.
+        """Make a host whose messages arrive here.
 
         Args:
             kind: its service's class.
             name: what its process does, as in "imagines".
-            is_repeatable: whether a failed job of it may simply be begun again; not where things move.
+            is_repeatable: whether a failed job may simply be started again; not where things move.
         """
         hosts: list[Host[S]] = []
         host: Host[S] = Host(kind, name, lambda message: self._inbox.put(hosts[0], message))
@@ -105,7 +107,7 @@ class Jobs(QObject):
 
     @property
     def is_idle(self) -> bool:
-        """Whether a job can be started."""
+        """Whether no job runs, so that one can be started."""
         return self.running is None
 
     def start(
@@ -118,16 +120,16 @@ class Jobs(QObject):
         then: Callable[[Any], None] | None = None,
         patience_s: float = 1.0,
     ) -> None:
-        """Begin a job; nothing happens while another one is under way (its buttons are disabled then).
+        """Start a job; nothing happens while another one runs (its buttons are disabled then).
 
         Args:
             title: what it does, for the bar, such as "Imagine".
             page: key of the page it belongs to.
-            host: that does it.
+            host: the process that does it.
             method: of the host's service.
             *arguments: for it.
-            then: told the result, after `finished`.
-            patience_s: how long a cancelled job may take to stop before its process is ended.
+            then: called with the result, after `finished`.
+            patience_s: how long a cancelled job may take to stop before its process is killed.
         """
         if self.running is not None:
             return
@@ -139,7 +141,7 @@ class Jobs(QObject):
         host.start(method, *arguments)
 
     def cancel(self) -> None:
-        """Ask the job to stop; its process is ended if it does not."""
+        """Ask the job to stop; its process is killed if it does not."""
         job = self.running
         if job is None or job.is_cancelling:
             return
@@ -149,7 +151,7 @@ class Jobs(QObject):
         self.progressed.emit(job)
 
     def close(self) -> None:
-        """End all processes; nothing is told any more."""
+        """End all processes; no signal is sent any more."""
         self._tick.stop()
         self._enforce.stop()
         self.blockSignals(True)
@@ -160,17 +162,17 @@ class Jobs(QObject):
         if self.running is not None:
             self.running.host.kill()
 
-    def _tell_progress(self) -> None:
+    def _emit_progress(self) -> None:
         if self.running is not None:
             self.progressed.emit(self.running)
 
-    def _hear(self, host: Host[Any], message: Message) -> None:
-        if isinstance(message, News):
-            self.news.emit(message.payload)
+    def _handle(self, host: Host[Any], message: Message) -> None:
+        if isinstance(message, Event):
+            self.event_received.emit(message.payload)
         elif isinstance(message, Warned):
             self.warned.emit(message.sentence)
         elif self.running is None or self.running.host is not host:
-            return  # the last words of a job that was ended
+            return  # the last message of a job that was killed
         elif isinstance(message, Progressed):
             self.running.progress(message)
         else:
@@ -185,12 +187,60 @@ class Jobs(QObject):
             if then is not None:
                 then(message.result)
         else:
-            self.failed.emit(job, _as_wished(job, message))
+            self.failed.emit(job, _as_shown(job, message))
 
 
-def _as_wished(job: RunningJob, failed: Failed) -> Failed:
-    """A process that was ended because its job would not stop has done what was asked."""
+def _as_shown(job: RunningJob, failed: Failed) -> Failed:
+    """Return a failure with its remedy in the window's words.
+
+    A process that was killed because its job would not stop is a cancelled job, not a failed one.
+    """
     if job.is_cancelling and failed.kind is FailureKind.DIED:
-        said = "Stopped on request; finished stages are kept."
-        return Failed(FailureKind.CANCELLED, said, failed.details, failed.error)
-    return failed
+        sentence = "Stopped on request; finished stages are kept."
+        return replace(failed, kind=FailureKind.CANCELLED, sentence=sentence)
+    return replace(failed, sentence=f"{failed.sentence} {remedy_words(failed.remedy)}".rstrip())
+
+
+class Inbox(QObject):
+    """Hands messages of the hosts' threads to the window's thread, in their order.
+
+    A busy window would otherwise process every state the arm ever had before it looks at a click; a pending
+    state or progress is replaced by a newer one of its kind.
+    """
+
+    _arrived = Signal()
+
+    def __init__(self, handle: Callable[[Host[Any], Message], None], parent: QObject) -> None:
+        super().__init__(parent)
+        self._handle = handle
+        self._lock = threading.Lock()
+        self._items: list[tuple[Host[Any], Message]] = []
+        self._arrived.connect(self._deliver, Qt.ConnectionType.QueuedConnection)
+
+    def put(self, host: Host[Any], message: Message) -> None:
+        """Take a message; safe from any thread."""
+        with self._lock:
+            is_first = not self._items
+            kind = _kind(message)
+            if kind is not None:
+                self._items = [
+                    item for item in self._items if item[0] is not host or _kind(item[1]) is not kind
+                ]
+            self._items.append((host, message))
+        if is_first:
+            self._arrived.emit()
+
+    def _deliver(self) -> None:
+        with self._lock:
+            items, self._items = self._items, []
+        for host, message in items:
+            self._handle(host, message)
+
+
+def _kind(message: Message) -> type[object] | None:
+    """The type of a message of which only the newest counts; none for all others."""
+    if isinstance(message, Progressed):
+        return Progressed
+    if isinstance(message, Event) and isinstance(message.payload, Status):
+        return type(message.payload)
+    return None

@@ -1,4 +1,4 @@
-"""What the program remembers from one start to the next: session, window, theme. Lost, nothing is lost."""
+"""What the program remembers from one start to the next: session, window, theme; losing it does no harm."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _LAST, _RUNNING, _THEME, _GEOMETRY, _SPLITS = "session/last", "session/running",
 
 
 class Memory:
-    """Reads and writes the settings of whoever uses the program."""
+    """Reads and writes the user's settings."""
 
     def __init__(self) -> None:
         self._settings = QSettings()
@@ -21,7 +21,7 @@ class Memory:
         text = str(self._settings.value(_LAST, ""))
         return Path(text) if text and Path(text).is_dir() else None
 
-    def keep_session(self, folder: Path | None) -> None:
+    def store_session(self, folder: Path | None) -> None:
         """Remember a session as open; none: it was left properly."""
         if folder is not None:
             self._settings.setValue(_LAST, str(folder))
@@ -58,7 +58,7 @@ class Memory:
         value = self._settings.value(f"{_SPLITS}/{page}")
         return [int(size) for size in value] if isinstance(value, list) and len(value) == 2 else None
 
-    def keep_split(self, page: str, sizes: list[int]) -> None:
+    def store_split(self, page: str, sizes: list[int]) -> None:
         """Remember them."""
         if len(sizes) == 2 and all(sizes):
             self._settings.setValue(f"{_SPLITS}/{page}", sizes)

@@ -1,66 +1,66 @@
-"""How each page of the work stands, in a word and a figure: what the tabs show."""
+"""The state of each page of the work, as a word and a figure: what the tabs show."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from core.files import read_json
-from core.pipeline.needs import Freshness
-from core.session import Session
-from core.session.pour_runs import pour_runs
+from app.gui.views.state_mark import State
+from core.pipeline.freshness import Freshness
+from core.pipeline.session_view import SessionView
 
 if TYPE_CHECKING:
     from app.gui.desk.workspace import Workspace
 
-PageStateWord = Literal["empty", "running", "fresh", "stale", "failed"]
-STAGE_OF_PAGE = {
-    "reconstruction": "collision",
-    "imagination": "containability",
-    "pours": "pouring",
+STAGES_OF_PAGE = {
+    "reconstruction": ("collision",),
+    "imagination": ("containability", "judgement"),
+    "pours": ("pouring", "risk"),
 }
 
 
 @dataclass(frozen=True)
 class PageState:
-    """What a tab says.
+    """What a tab shows.
 
     Attributes:
         word: its state.
         figure: the one number or word that matters most, such as "24 views"; may be empty.
     """
 
-    word: PageStateWord
+    word: State
     figure: str = ""
 
 
-def page_states(
-    workspace: Workspace, running_page: str | None, failed_page: str | None
-) -> dict[str, PageState]:
+def page_states(workspace: Workspace, running_page: str | None) -> dict[str, PageState]:
     """Return the state of each page of the work.
 
     Args:
         workspace: the open session.
-        running_page: the page of the job that is under way.
-        failed_page: the page whose last job failed, until another one ends.
+        running_page: the page of the running job.
     """
     states = {"scan": _scan(workspace), "robot": _robot(workspace)}
-    for page, stage in STAGE_OF_PAGE.items():
-        states[page] = PageState(_word(workspace, stage), _figure(workspace, page))
-    if failed_page in states:
-        states[failed_page] = PageState("failed", states[failed_page].figure)
+    for page, stages in STAGES_OF_PAGE.items():
+        states[page] = PageState(_word(workspace, stages), _figure(workspace, page))
     if running_page in states:
         states[running_page] = PageState("running", states[running_page].figure)
     return states
 
 
-def _word(workspace: Workspace, stage: str) -> PageStateWord:
-    words: dict[Freshness, PageStateWord] = {
-        Freshness.EMPTY: "empty",
-        Freshness.STALE: "stale",
-        Freshness.FRESH: "fresh",
-    }
-    return words[workspace.stages.get(stage, Freshness.EMPTY)]
+def with_failure(states: Mapping[str, PageState], page: str | None) -> dict[str, PageState]:
+    """Return the states with the page marked whose last job failed, unless another one runs there."""
+    if page is None or page not in states or states[page].word == "running":
+        return dict(states)
+    return dict(states) | {page: PageState("failed", states[page].figure)}
+
+
+def _word(workspace: Workspace, stages: Sequence[str]) -> State:
+    """What is finished in part, after an interruption or by an earlier version, is out of date."""
+    found = {workspace.stages.get(stage, Freshness.EMPTY) for stage in stages}
+    if found == {Freshness.EMPTY}:
+        return "empty"
+    return "fresh" if found == {Freshness.FRESH} else "stale"
 
 
 def _scan(workspace: Workspace) -> PageState:
@@ -70,21 +70,22 @@ def _scan(workspace: Workspace) -> PageState:
         return PageState("fresh", workspace.tr("mesh"))
     if not workspace.has("scan"):
         return PageState("empty")
-    n = len(list((workspace.session.path / "scan" / "rgbd").glob("*.color.png")))
+    record = workspace.record("scan")
+    n = 0 if record is None else sum(name.endswith(".color.png") for name in record.files)
     return PageState("fresh", workspace.tr("{n} views").format(n=n))
 
 
 def _robot(workspace: Workspace) -> PageState:
-    """A pour belongs to the imagination it was made for."""
+    """The last pour is up to date if it was made for the present imagination."""
     if workspace.session is None:
         return PageState("empty")
-    runs = [run for run in pour_runs(workspace.session.path) if not run.is_back_off]
+    runs = [run for run in workspace.runs if not run.is_back_off]
     if not runs:
         return PageState("empty")
     last = runs[-1]
     if not last.is_done:
         return PageState("failed", workspace.tr("stopped"))
-    record = workspace.session.record("pouring")
+    record = workspace.record("pouring")
     is_current = record is not None and record.digest == last.imagination
     spilled = last.outcome.n_spilled if last.outcome is not None else None
     figure = workspace.tr("poured") if spilled is None else workspace.tr("{n} spilled").format(n=spilled)
@@ -92,22 +93,20 @@ def _robot(workspace: Workspace) -> PageState:
 
 
 def _figure(workspace: Workspace, page: str) -> str:
-    session = workspace.session
-    if session is None or not workspace.has(STAGE_OF_PAGE[page]):
+    view = workspace.view
+    if view is None:
         return ""
-    if page == "imagination":
-        return _verdict(session, workspace)
-    return _best(session) if page == "pours" else ""
+    if page == "imagination" and view.verdict is not None:
+        is_container = view.verdict.is_open_container
+        return workspace.tr("container") if is_container else workspace.tr("no container")
+    if page == "pours" and "pouring" in view.records:
+        return _chosen_p(view)
+    return ""
 
 
-def _verdict(session: Session, workspace: Workspace) -> str:
-    table = read_json(session.folder("containability") / "containability.json")
-    return workspace.tr("container") if table["is_open_container"] else workspace.tr("no container")
-
-
-def _best(session: Session) -> str:
-    path = session.folder("pouring") / "pours.json"
-    if not path.is_file():
+def _chosen_p(view: SessionView) -> str:
+    """P of the pour that will be made; a dash if there is none."""
+    if view.pours is None or view.place is None:
         return "–"
-    best = max(max(row) for row in read_json(path)["p"])
-    return f"{100 * best:.0f} %"
+    i, j = view.place
+    return f"{100 * view.pours.p[i][j]:.0f} %"

@@ -1,4 +1,4 @@
-"""The pipeline's stages in the words of whoever waits for them."""
+"""The pipeline's stages in the user's words."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ def stage_words(stage: str) -> str:
         "import": translate("Stage", "Reading the images"),
         "scan": translate("Stage", "Taking views"),
         "reconstruction": translate("Stage", "Reconstructing the surface"),
-        "quality": translate("Stage", "Judging the scan"),
-        "looking again": translate("Stage", "Looking where to look again"),
-        "collision": translate("Stage", "Making a body for the physics"),
+        "quality": translate("Stage", "Checking the scan"),
+        "looking again": translate("Stage", "Choosing further views"),
+        "collision": translate("Stage", "Making the collision model"),
         "containability": translate("Stage", "Dropping candies"),
         "capacity": translate("Stage", "Filling it with candies"),
-        "holding": translate("Stage", "Tilting it until they leave"),
-        "pouring": translate("Stage", "Imagining pours"),
-        "risk": translate("Stage", "Trying the best pours with errors"),
+        "retention": translate("Stage", "Tilting it until candies fall out"),
+        "pouring": translate("Stage", "Simulating pours"),
+        "risk": translate("Stage", "Trying the best pours with disturbances"),
         "motion": translate("Stage", "Checking the arm's motions"),
         "evidence": translate("Stage", "Rendering pictures"),
         "pour": translate("Stage", "Pouring"),

@@ -1,4 +1,4 @@
-"""The open session and the parameters that the next run will use; every change of them can be undone."""
+"""The open session and the parameters of the next run; every change of them can be undone."""
 
 from __future__ import annotations
 
@@ -7,27 +7,30 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
-from app.jobs.session_work import SessionTask
-from app.remembered import remembered_parameters
+from app.library.session_folder import remembered_parameters
+from app.operations.session import SessionTask
 from core.errors import InputError
-from core.files import read_json
 from core.parameters import Parameters, load_preset
-from core.pipeline.needs import Freshness, freshness
-from core.session import Session
+from core.pipeline.freshness import Freshness, finished_records, freshness
+from core.pipeline.session_view import SessionView
+from core.session import Session, StageRecord
+from core.session.pour_runs import PourRun, pour_runs
 
 
 class Workspace(QObject):
-    """What is on the table.
+    """The open session.
 
     Signals: `session_changed` when another session was opened; `parameters_changed` when the parameters or
-    their preset are others; `stages_changed` when a stage may stand differently than before.
+    their preset are others; `stages_changed` when the freshness of a stage may have changed.
 
     Attributes:
         session: the open one; none at first.
         parameters: for the next run.
         preset_name: the preset they started from.
         preset: its parameters.
-        stages: how each stage of the session stands, by its name; empty without a session.
+        stages: the freshness of each stage by its name; empty without a session.
+        view: what the session held when the freshness was computed, read once; none without a session.
+        runs: the pours that the arm had made by then, the oldest first.
         undo_stack: of parameter edits, among them the crop box.
     """
 
@@ -42,6 +45,8 @@ class Workspace(QObject):
         self.preset_name = "default"
         self.preset = Parameters()
         self.stages: dict[str, Freshness] = {}
+        self.view: SessionView | None = None
+        self.runs: tuple[PourRun, ...] = ()
         self.undo_stack = QUndoStack(self)
 
     @property
@@ -57,7 +62,7 @@ class Workspace(QObject):
         """
         session = Session.create_or_open(folder)
         remembered = remembered_parameters(session.path) or ("default", Parameters())
-        self.session = session
+        self.session, self.view, self.runs = session, None, ()
         self.undo_stack.clear()
         self._set(*remembered)
         self.session_changed.emit()
@@ -65,19 +70,25 @@ class Workspace(QObject):
 
     def close(self) -> None:
         """Leave the session."""
-        self.session = None
+        self.session, self.view, self.runs = None, None, ()
         self.undo_stack.clear()
         self.session_changed.emit()
         self.refresh()
 
     def task(self) -> SessionTask:
-        """Return what a job needs to know; a session must be open."""
+        """Return what a job needs; a session must be open."""
         assert self.session is not None, "buttons that start a job are disabled without a session"
         return SessionTask(self.session.path, self.parameters, self.preset_name)
 
     def refresh(self) -> None:
-        """Look again how the stages stand."""
-        self.stages = {} if self.session is None else freshness(self.session, self.parameters)
+        """Compute the freshness of the stages again."""
+        if self.session is None:
+            self.stages, self.view, self.runs = {}, None, ()
+        else:
+            records = finished_records(self.session.path)
+            self.stages = freshness(self.session, self.parameters, records)
+            self.view = SessionView(self.session, records)
+            self.runs = tuple(pour_runs(self.session.path))
         self.stages_changed.emit()
 
     def is_fresh(self, stage: str) -> bool:
@@ -88,13 +99,17 @@ class Workspace(QObject):
         """Whether a stage was finished, with whatever parameters."""
         return self.stages.get(stage, Freshness.EMPTY) is not Freshness.EMPTY
 
+    def record(self, stage: str) -> StageRecord | None:
+        """What a stage was made from, when the freshness was computed; none if it was not finished."""
+        return None if self.view is None else self.view.finished.get(stage)
+
     @property
     def is_container(self) -> bool | None:
-        """The verdict on the object, as far as it is up to date; none if it is not."""
-        if self.session is None or not self.is_fresh("containability"):
+        """The verdict on the object; none if there is none that is up to date."""
+        if self.view is None or not self.is_fresh("judgement"):
             return None
-        table = read_json(self.session.folder("containability") / "containability.json")
-        return bool(table["is_open_container"])
+        verdict = self.view.verdict
+        return None if verdict is None else verdict.is_open_container
 
     def edit(self, parameters: Parameters, text: str) -> None:
         """Use other parameters from now on; `text` names the change for the undo menu."""
@@ -118,7 +133,7 @@ class Workspace(QObject):
 
 
 def _preset(name: str) -> tuple[str, Parameters]:
-    """A preset; one whose file has gone meanwhile leaves the defaults to compare with."""
+    """A preset; where its file has gone, the defaults serve for comparison."""
     try:
         return name, load_preset(name)
     except InputError:

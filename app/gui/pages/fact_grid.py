@@ -21,7 +21,7 @@ class Fact:
         value: with its unit.
         tooltip: what it means and where it comes from.
         before: its value in the last result; empty if there is none to compare with.
-        is_wide: whether the value takes the room of what was before, too.
+        is_wide: whether the value also takes the column of what was before.
     """
 
     title: str
@@ -34,15 +34,18 @@ class Fact:
 class FactGrid(QWidget):
     """Rows of facts; the column with what was before is there when there is something in it."""
 
-    def __init__(self, name: str, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, name: str, per_row: int = 1) -> None:
+        """Make an empty grid; only with one fact per row there is a column for what was before."""
+        super().__init__()
         self.setObjectName(name)
         self._facts: tuple[Fact, ...] = ()
+        self._per_row = per_row
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
-        self._grid.setHorizontalSpacing(2 * GRID_PX)
+        self._grid.setHorizontalSpacing(2 * GRID_PX // per_row)
         self._grid.setVerticalSpacing(GRID_PX // 2)
         self._grid.setColumnStretch(3, 1)
+        self._grid.setColumnStretch(1, per_row - 1)
 
     @property
     def facts(self) -> tuple[Fact, ...]:
@@ -60,10 +63,11 @@ class FactGrid(QWidget):
         if any(fact.before for fact in facts):
             self._put(0, 1, self.tr("now"), "muted")
             self._put(0, 2, self.tr("last"), "muted")
-        for row, fact in enumerate(facts, start=1):
-            self._put(row, 0, fact.title, "muted", fact.tooltip)
-            self._put(row, 1, fact.value, "", fact.tooltip, 3 if fact.is_wide else 1)
-            self._put(row, 2, fact.before, "muted", fact.tooltip)
+        for k, fact in enumerate(facts):
+            row, column = k // self._per_row + 1, 2 * (k % self._per_row)
+            self._put(row, column, fact.title, "muted", fact.tooltip)
+            self._put(row, column + 1, fact.value, "", fact.tooltip, 3 if fact.is_wide else 1)
+            self._put(row, column + 2, fact.before, "muted", fact.tooltip)
 
     def _put(self, row: int, column: int, text: str, role: str, tip: str = "", span: int = 1) -> None:
         if not text:

@@ -16,7 +16,7 @@ PRIMARY = "primary"
 
 
 class Page(QWidget):
-    """Base of all pages: it looks again at what it shows when it is shown and when the session changes.
+    """Base of all pages; a page refreshes when it is shown, and when the session or the cell changes.
 
     Attributes:
         KEY: its name in the program; also the object's name.

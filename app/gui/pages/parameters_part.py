@@ -11,8 +11,9 @@ from PySide6.QtWidgets import QFileDialog, QPushButton, QToolButton, QVBoxLayout
 from app.gui.desk.desk import Desk
 from app.gui.desk.workspace import Workspace
 from app.gui.pages.saved_presets import preset_names, preset_tips, save_preset
+from app.gui.remedies import worded
 from app.gui.theme import GRID_PX
-from app.gui.views.parameter_editor import ParameterEditor
+from app.gui.views.parameter_editor.editor import ParameterEditor
 from core.errors import InputError, SessionError
 from core.parameters import Parameters, difference
 
@@ -20,7 +21,7 @@ _FOLDED_EDITOR_PX = 46 * GRID_PX
 
 
 class ParametersPart(QWidget):
-    """The editor of some groups, with "Save as preset"; it takes its time: make it when it is to be seen.
+    """The editor of some groups, with "Save as preset"; slow to make: make it when it is to be seen.
 
     Attributes:
         editor: shows the workspace's parameters.
@@ -30,7 +31,7 @@ class ParametersPart(QWidget):
         super().__init__()
         self.setObjectName("parameters_part")
         self._workspace = desk.workspace
-        self._told = desk.told
+        self._message = desk.message
         self.editor = ParameterEditor(groups)
         self._offer_presets()
         self.editor.edited.connect(self._edit)
@@ -39,7 +40,7 @@ class ParametersPart(QWidget):
         self._save.setObjectName("save_preset")
         self._save.setProperty("role", "link")
         self._save.setToolTip(
-            self.tr("Keep all parameters in a file, for other objects and the command line")
+            self.tr("Save all parameters to a file, for other objects and the command line")
         )
         self._save.clicked.connect(self._ask_where)
         column = QVBoxLayout(self)
@@ -51,19 +52,19 @@ class ParametersPart(QWidget):
         self._show()
 
     def choose_preset(self, name_or_file: str) -> None:
-        """Start from a preset; one that cannot be used is told of, and everything stays."""
+        """Start from a preset; if it cannot be used, say so and leave everything as it is."""
         try:
             self._workspace.choose_preset(name_or_file)
         except InputError as error:
-            self._told.emit(str(error))
+            self._message.emit(worded(error))
             self._show()
 
     def save_as(self, path: Path) -> None:
-        """Keep the parameters as a preset, and go on from it."""
+        """Save the parameters as a preset, and go on from it."""
         try:
             save_preset(path, self._workspace.parameters)
         except SessionError as error:
-            self._told.emit(str(error))
+            self._message.emit(worded(error))
             return
         self._offer_presets()
         self.choose_preset(str(path))
@@ -93,7 +94,7 @@ class ParametersPart(QWidget):
 
 
 class FoldedParameters(QWidget):
-    """The same under a header that opens and closes it, and tells how much differs.
+    """The same under a header that opens and closes it, and says how many differ.
 
     Signals: `opened` when there is suddenly more to see.
     """
@@ -133,7 +134,7 @@ class FoldedParameters(QWidget):
     def _count(self) -> None:
         n = n_different(self._desk.workspace, self._groups)
         if n == 0:
-            text = self.tr("Parameters — as the preset")
+            text = self.tr("Parameters — as in the preset")
         elif n == 1:
             text = self.tr("Parameters — 1 differs from preset")
         else:

@@ -2,30 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from importlib import import_module
 
 from PySide6.QtCore import QCoreApplication
 
 from app.gui.desk.desk import Desk
-from app.gui.frame.tab_list import TabFacts
 from app.gui.pages.page import Page
 
 WORK = ("scan", "reconstruction", "imagination", "pours", "robot")
-OTHERS = ("calibration", "history")
+OTHERS = ("tuning", "history")
 _CLASSES = {
-    "scan": "ScanPage",
-    "reconstruction": "ReconstructionPage",
-    "imagination": "ImaginationPage",
-    "pours": "PoursPage",
-    "robot": "RobotPage",
-    "calibration": "CalibrationPage",
-    "history": "HistoryPage",
+    "scan": "scan.page:ScanPage",
+    "reconstruction": "reconstruction.page:ReconstructionPage",
+    "imagination": "imagination.page:ImaginationPage",
+    "pours": "pours.page:PoursPage",
+    "robot": "robot.page:RobotPage",
+    "tuning": "tuning.page:TuningPage",
+    "history": "history.page:HistoryPage",
 }
+
+
+@dataclass(frozen=True)
+class TabFacts:
+    """A page's key, its title, and what it is for."""
+
+    key: str
+    title: str
+    tip: str
 
 
 def import_page(key: str) -> type[Page]:
     """Return a page's class; safe in a thread, which is how the window keeps its imports from being felt."""
-    page: type[Page] = getattr(import_module(f"app.gui.pages.{key}.page"), _CLASSES[key])
+    module, name = _CLASSES[key].split(":")
+    page: type[Page] = getattr(import_module(f"app.gui.pages.{module}"), name)
     return page
 
 
@@ -36,32 +46,17 @@ def make_page(key: str, desk: Desk) -> Page:
 
 def tab_facts(key: str) -> TabFacts:
     """Return what a page's tab says."""
-    translate = QCoreApplication.translate
+
+    def tr(text: str) -> str:
+        return QCoreApplication.translate("Tab", text)
+
     texts = {
-        "scan": (
-            translate("Tab", "Scan"),
-            translate("Tab", "Let the robot look at the object from all sides."),
-        ),
-        "reconstruction": (
-            translate("Tab", "Model"),
-            translate("Tab", "The object's surface, and how good it is."),
-        ),
-        "imagination": (
-            translate("Tab", "Imagine"),
-            translate("Tab", "Would candies dropped on it stay? Told by physics."),
-        ),
-        "pours": (
-            translate("Tab", "Pours"),
-            translate("Tab", "From where to pour: 8 directions, 3 distances."),
-        ),
-        "robot": (translate("Tab", "Robot"), translate("Tab", "The planned motion, and the pour itself.")),
-        "calibration": (
-            translate("Tab", "Calibrate"),
-            translate("Tab", "Try parameters on objects whose answer is known."),
-        ),
-        "history": (
-            translate("Tab", "History"),
-            translate("Tab", "Earlier sessions: look, compare, export."),
-        ),
+        "scan": (tr("Scan"), tr("Let the robot scan the object from all sides.")),
+        "reconstruction": (tr("Model"), tr("The object's surface, and how good it is.")),
+        "imagination": (tr("Imagine"), tr("Test by physics whether dropped candies stay in the object.")),
+        "pours": (tr("Pours"), tr("Where to pour from: 8 directions, 3 distances.")),
+        "robot": (tr("Robot"), tr("The planned motion, and the pour itself.")),
+        "tuning": (tr("Tune"), tr("Try parameters on objects whose answer is known.")),
+        "history": (tr("History"), tr("Earlier sessions: view, compare, export.")),
     }
     return TabFacts(key, *texts[key])

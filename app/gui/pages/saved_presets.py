@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QSettings
 
-from app.presets import presets_folder
+from app.library.places import presets_folder
 from core.errors import PoursightError, SessionError
 from core.files import read_json, write_json
 from core.parameters import PRESET_NAMES, Parameters, difference
@@ -24,7 +24,7 @@ def preset_names() -> list[str]:
 
 
 def preset_tips(names: list[str]) -> dict[str, str]:
-    """Return what the files among some presets say of themselves, such as what they were fitted to."""
+    """Return the descriptions in preset files, such as what they were fitted to."""
     return {name: f"{said}\n{name}" for name in names if (said := _description(name))}
 
 

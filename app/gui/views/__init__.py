@@ -1,1 +1,1 @@
-"""Widgets that show plain data and tell what was clicked; they know neither sessions nor jobs."""
+"""Widgets that show plain data and emit signals; they know neither sessions nor jobs."""

@@ -29,7 +29,7 @@ _TURBO = color_table(TURBO)
 _TURBO_PIXELS = np.vstack(
     [np.zeros((1, 4), np.uint8), np.column_stack([_TURBO, np.full(256, 255, np.uint8)])]
 )
-"""(257, 4) RGBA; the first is for pixels without depth and lets the hatching through."""
+"""(257, 4) RGBA; the first, transparent over the hatching, is for pixels without depth."""
 _BAR_PX = 10
 _ROUND_M = 0.05
 """The automatic range ends at multiples of it, so that it does not flicker from frame to frame."""
@@ -82,7 +82,7 @@ class _Panel(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def set_empty_text(self, text: str) -> None:
-        """Say what will be here, or why there is nothing."""
+        """Set the text that is shown while there is no picture."""
         self._empty_text = text
         self.update()
 
@@ -92,20 +92,20 @@ class _Panel(QWidget):
     def minimumSizeHint(self) -> QSize:
         return QSize(160, 120)
 
-    def _room(self) -> QRectF:
-        """Where the picture may be, without what stands at its right."""
+    def _available(self) -> QRectF:
+        """Where the picture may be, without the scale at its right."""
         return QRectF(self.rect()).adjusted(0, 0, -self._beside_px(), 0)
 
     def _beside_px(self) -> float:
-        """Width of what stands at the picture's right."""
+        """Width of the scale at the picture's right."""
         return 0.0
 
     def _place(self, width: int, height: int) -> QRectF:
         """Where a picture of that size is drawn."""
-        room = self._room()
-        scale = min(room.width() / width, room.height() / height)
+        area = self._available()
+        scale = min(area.width() / width, area.height() / height)
         box = QRectF(0, 0, width * scale, height * scale)
-        box.moveCenter(room.center())
+        box.moveCenter(area.center())
         return box
 
     def _paint_empty(self, painter: QPainter) -> None:
@@ -119,17 +119,12 @@ class _Panel(QWidget):
         box = QRectF(self.rect()).adjusted(GRID_PX, GRID_PX, -GRID_PX, -GRID_PX)
         painter.drawText(box, int(flags), self._empty_text)
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()
-
 
 class ImagePanel(_Panel):
     """A colour image."""
 
     def __init__(self, parent: QWidget | None = None, *, is_above_depth: bool = False) -> None:
-        """Make one; above a depth panel of its size it leaves the scale's room, so that both agree."""
+        """Make one; above a depth panel it leaves the scale's width free, so that both pictures align."""
         super().__init__("", parent)
         self._is_above_depth = is_above_depth
         self.setObjectName("image_panel")
@@ -163,7 +158,7 @@ class ImagePanel(_Panel):
 
 
 class DepthPanel(_Panel):
-    """A depth image in turbo colours with its scale in metres; the mouse tells the depth under it."""
+    """A depth image in turbo colours with its scale in metres; a tooltip shows the depth under the mouse."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__("", parent)
@@ -172,7 +167,6 @@ class DepthPanel(_Panel):
         self.set_empty_text(self.tr("No depth image yet"))
         self.setMouseTracking(True)
         self._depth_m: NDArray[np.float32] | None = None
-        self._fixed_m: tuple[float, float] | None = None
         self._range_m = (0.0, 1.0)
 
     @property
@@ -180,20 +174,15 @@ class DepthPanel(_Panel):
         """Depths at the ends of the scale."""
         return self._range_m
 
-    def set_range(self, range_m: tuple[float, float] | None) -> None:
-        """Fix the ends of the scale, or take them from each image with None."""
-        self._fixed_m = range_m
-        self.set_depth(self._depth_m)
-
     def set_depth(self, depth_m: NDArray[np.float32] | None) -> None:
-        """Show depths (H, W) in m; 0 and not finite mean there is none. The array is kept, not copied."""
+        """Show depths (H, W) in m; 0 and not finite mean there is none. The array is not copied."""
         self._depth_m = depth_m
         if depth_m is None:
             self._image = QImage()
         else:
-            room = self._room()
-            shown = thinned(depth_m, room.width(), room.height()).astype(np.float32, copy=False)
-            self._range_m = self._fixed_m or range_of(shown) or self._range_m
+            area = self._available()
+            shown = thinned(depth_m, area.width(), area.height()).astype(np.float32, copy=False)
+            self._range_m = range_of(shown) or self._range_m
             rgba = depth_colors(shown, *self._range_m)
             height, width, _ = rgba.shape
             image = QImage(rgba.tobytes(), width, height, 4 * width, QImage.Format.Format_RGBA8888)
@@ -214,7 +203,7 @@ class DepthPanel(_Panel):
         return depth if np.isfinite(depth) and depth > 0 else float("nan")
 
     def describe(self, point: QPointF) -> str:
-        """Return what the tooltip says at a point of the widget."""
+        """Return the tooltip for a point of the widget."""
         depth = self.depth_at(point)
         if depth is None:
             return self.tr("Depth along the camera's axis, in metres; hatched: no depth")
@@ -223,14 +212,14 @@ class DepthPanel(_Panel):
         return self.tr("{depth:.3f} m").format(depth=depth)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Tell the depth under the mouse."""
+        """Show the depth under the mouse."""
         if self.depth_at(event.position()) is not None:
             QToolTip.showText(event.globalPosition().toPoint(), self.describe(event.position()), self)
         else:
             QToolTip.hideText()
 
     def event(self, event: QEvent) -> bool:
-        """Tell the depth where the mouse rests."""
+        """Show the depth where the mouse rests."""
         if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip:
             QToolTip.showText(event.globalPos(), self.describe(QPointF(event.pos())), self)
             return True

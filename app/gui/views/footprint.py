@@ -1,40 +1,16 @@
-"""The footprint from above: where the candies fell from that stayed."""
+"""The footprint from above: where the candies that stayed fell from."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
-from math import cos, sin
-
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.painting import smaller, tick_step
-
-FloatArray = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class _Shown:
-    drops_m: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
-    retained: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
-    outline_m: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
-    center_m: FloatArray | None = None
-    axis_rad: float = 0.0
-    radii_m: tuple[float, ...] = ()
-
-    def extent_m(self) -> tuple[FloatArray, FloatArray]:
-        """Lower and upper corner of all that is drawn."""
-        points = [self.drops_m, self.outline_m]
-        if self.center_m is not None:
-            reach = max(self.radii_m, default=0.0)
-            points.append(np.array([self.center_m - reach, self.center_m + reach]))
-        stacked = np.concatenate(points)
-        return stacked.min(axis=0), stacked.max(axis=0)
+from core.geometry import FloatArray
+from core.report.plot_geometry import FootprintPlan
 
 
 class _Frame:
@@ -59,7 +35,7 @@ class _Frame:
 
 
 class FootprintView(QWidget):
-    """Drop positions kept and lost, the object's outline, p_E and the principal axis; axes in mm."""
+    """Drop positions kept and lost, the object's outline, p_E and the principal axes; coordinates in mm."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -69,40 +45,17 @@ class FootprintView(QWidget):
         self.setToolTip(
             self.tr(
                 "Where the candies started, seen from above (base frame).\n"
-                "p_E is the mean of those that stayed, the line their principal axis (paper, Sec. III-A)."
+                "p_E is the mean of those that stayed; the lines are their principal axes,\n"
+                "two standard deviations each way (paper, Sec. III-A)."
             )
         )
-        self._shown: _Shown | None = None
+        self._shown: FootprintPlan | None = None
 
-    def set_footprint(
-        self,
-        drop_xy_m: FloatArray,
-        retained: NDArray[np.bool_],
-        outline_xy_m: FloatArray,
-        center_m: FloatArray | None,
-        axis_rad: float,
-        radii_m: Sequence[float] = (),
-    ) -> None:
-        """Show one footprint.
-
-        Args:
-            drop_xy_m: (n, 2) where the candies started; further columns are ignored.
-            retained: (n,) whether each stayed.
-            outline_xy_m: (m, 2) polygon of the object, or (2, 2) lower and upper corner of its AABB.
-            center_m: (2,) p_E; further elements are ignored; None when nothing stayed.
-            axis_rad: angle of the principal axis against x.
-            radii_m: distances of the pivots from p_E, drawn as circles.
-        """
-        outline = np.asarray(outline_xy_m, float)[:, :2]
-        if len(outline) == 2:
-            (x0, y0), (x1, y1) = outline
-            outline = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
-        center = None if center_m is None else np.asarray(center_m, float)[:2]
-        drops = np.asarray(drop_xy_m, float)[:, :2]
-        self._shown = _Shown(drops, np.asarray(retained, bool), outline, center, axis_rad, tuple(radii_m))
-        kept = int(self._shown.retained.sum())
+    def set_footprint(self, plan: FootprintPlan) -> None:
+        """Show one footprint."""
+        self._shown = plan
         self.setAccessibleDescription(
-            self.tr("{kept} of {n} candies stayed").format(kept=kept, n=len(self._shown.retained))
+            self.tr("{kept} of {n} candies stayed").format(kept=plan.n_kept, n=len(plan.retained))
         )
         self.update()
 
@@ -117,7 +70,7 @@ class FootprintView(QWidget):
         return QSize(320, 300)
 
     def minimumSizeHint(self) -> QSize:
-        """Return the least size it can be read at."""
+        """Return the smallest legible size."""
         return QSize(200, 180)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -133,7 +86,7 @@ class FootprintView(QWidget):
         if self._shown is None or len(self._shown.drops_m) + len(self._shown.outline_m) == 0:
             painter.setFont(self.font())
             painter.setPen(theme.color("muted"))
-            text = self.tr("The footprint appears here\nonce candies were dropped")
+            text = self.tr("The footprint appears here\nonce candies have been dropped")
             painter.drawText(area, Qt.AlignmentFlag.AlignCenter, text)
         else:
             frame = _Frame(area, *self._shown.extent_m())
@@ -170,7 +123,7 @@ class FootprintView(QWidget):
                 if box.right() <= self.width() and box.left() >= -30 and box.top() >= -2:
                     painter.drawText(box, flags, text)
 
-    def _paint_object(self, painter: QPainter, frame: _Frame, shown: _Shown) -> None:
+    def _paint_object(self, painter: QPainter, frame: _Frame, shown: FootprintPlan) -> None:
         theme = theme_of(self)
         fill = theme.color("body")
         fill.setAlphaF(0.22)
@@ -181,10 +134,10 @@ class FootprintView(QWidget):
         painter.setPen(QPen(theme.color("text"), 1.2, Qt.PenStyle.DashLine))
         if shown.center_m is not None:
             center = frame.point(*shown.center_m)
-            for radius_m in shown.radii_m:
+            for radius_m in shown.pivot_radii_m:
                 painter.drawEllipse(center, radius_m * frame.px_per_m, radius_m * frame.px_per_m)
 
-    def _paint_drops(self, painter: QPainter, frame: _Frame, shown: _Shown) -> None:
+    def _paint_drops(self, painter: QPainter, frame: _Frame, shown: FootprintPlan) -> None:
         size = min(max(0.0022 * frame.px_per_m, 2.2), 5.0)
         for (x, y), is_kept in zip(shown.drops_m, shown.retained, strict=True):
             self._paint_drop(painter, frame.point(x, y), bool(is_kept), size)
@@ -201,19 +154,18 @@ class FootprintView(QWidget):
             painter.drawLine(at + QPointF(-size, -size), at + QPointF(size, size))
             painter.drawLine(at + QPointF(-size, size), at + QPointF(size, -size))
 
-    def _paint_center(self, painter: QPainter, frame: _Frame, shown: _Shown) -> None:
+    def _paint_center(self, painter: QPainter, frame: _Frame, shown: FootprintPlan) -> None:
         if shown.center_m is None:
             return
         theme = theme_of(self)
         at = frame.point(*shown.center_m)
-        reach = 0.36 * min(frame.area.width(), frame.area.height())
-        along = QPointF(cos(shown.axis_rad), -sin(shown.axis_rad)) * reach
         halo = theme.color("surface")
         halo.setAlphaF(0.6)
-        painter.setPen(QPen(halo, 4))
-        painter.drawLine(at - along, at + along)
-        painter.setPen(QPen(theme.color("text"), 1.8))
-        painter.drawLine(at - along, at + along)
+        styles = (Qt.PenStyle.SolidLine, Qt.PenStyle.DashLine)
+        for (begin, end), style in zip(() if shown.axes_m is None else shown.axes_m, styles, strict=False):
+            for pen in (QPen(halo, 4), QPen(theme.color("text"), 1.8, style)):
+                painter.setPen(pen)
+                painter.drawLine(frame.point(*begin), frame.point(*end))
         painter.setPen(QPen(theme.color("surface"), 2))
         painter.setBrush(theme.color("text"))
         painter.drawEllipse(at, 5.5, 5.5)
@@ -226,13 +178,12 @@ class FootprintView(QWidget):
         painter.setPen(theme.color("text"))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, "p_E")
 
-    def _paint_legend(self, painter: QPainter, area: QRectF, shown: _Shown) -> None:
+    def _paint_legend(self, painter: QPainter, area: QRectF, shown: FootprintPlan) -> None:
         theme = theme_of(self)
         metrics = QFontMetricsF(painter.font())
-        kept = int(shown.retained.sum())
         words = (
-            (True, self.tr("{n} kept").format(n=kept)),
-            (False, self.tr("{n} lost").format(n=len(shown.retained) - kept)),
+            (True, self.tr("{n} kept").format(n=shown.n_kept)),
+            (False, self.tr("{n} lost").format(n=len(shown.retained) - shown.n_kept)),
         )
         x, y = area.left() + 4, self.height() - metrics.height() / 2 - 3
         for is_kept, text in words:

@@ -1,4 +1,4 @@
-"""A button that must be held: for what moves the arm."""
+"""A button that must be held, for what moves the arm."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from app.gui.views.painting import smaller, tabular
 _RING_PX = 36
 _TICK_MS = 16
 _MOST_TICK_S = 0.1
-"""A tick counts at most this much: while the window is stuck nobody can see a release, so nothing is held."""
+"""A tick counts at most this much: while the window is stuck a release goes unnoticed, so nothing is held."""
 _FALL = 4.0
 """The ring falls back this many times faster than it fills."""
 _KEYS = (Qt.Key.Key_Space, Qt.Key.Key_Return, Qt.Key.Key_Enter)
@@ -39,7 +39,7 @@ class HoldButton(QAbstractButton):
     confirmed = Signal()
 
     def __init__(self, text: str, hint: str = "", hold_s: float = 1.5, parent: QWidget | None = None) -> None:
-        """Make one that says `text` and, after an early release, `hint` instead of that nothing happened."""
+        """Make one labelled `text`; `hint` replaces the standard message after an early release."""
         super().__init__(parent)
         self.setText(text)
         self.setObjectName("hold_button")
@@ -74,7 +74,7 @@ class HoldButton(QAbstractButton):
         self.setAccessibleDescription(reason or "")
 
     def cancel(self) -> None:
-        """Let go without confirming; the ring falls back."""
+        """Release without confirming; the ring falls back."""
         if self._is_holding:
             self._is_holding = False
             self._was_early = True
@@ -106,51 +106,49 @@ class HoldButton(QAbstractButton):
         self.update()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Begin to hold."""
+        """Start holding."""
         if event.button() == Qt.MouseButton.LeftButton:
             self._begin()
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Let go."""
+        """Release."""
         if event.button() == Qt.MouseButton.LeftButton:
             self.cancel()
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Off the button is let go."""
+        """Leaving the button releases it."""
         if not self.rect().contains(event.position().toPoint()):
             self.cancel()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Begin to hold."""
+        """Start holding."""
         if event.key() not in _KEYS:
             super().keyPressEvent(event)
         elif not event.isAutoRepeat():
             self._begin()
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
-        """Let go."""
+        """Release."""
         if event.key() not in _KEYS:
             super().keyReleaseEvent(event)
         elif not event.isAutoRepeat():
             self.cancel()
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
-        """Where keys go elsewhere, a release would not be seen."""
+        """Without the focus a key's release would go unnoticed."""
         self.cancel()
         super().focusOutEvent(event)
 
     def hideEvent(self, event: QHideEvent) -> None:
-        """Nobody holds what is not shown."""
+        """A hidden button is not held."""
         self.cancel()
         super().hideEvent(event)
 
     def changeEvent(self, event: QEvent) -> None:
-        """Disabled is let go; repaint in another theme."""
+        """A disabled button counts as released."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.EnabledChange and not self.isEnabled():
             self.cancel()
-        if event.type() in (QEvent.Type.PaletteChange, QEvent.Type.EnabledChange):
-            self.update()
 
     def sizeHint(self) -> QSize:
         """Return a good size."""
@@ -165,7 +163,7 @@ class HoldButton(QAbstractButton):
 
     def _second_line(self, state: str) -> str:
         if state == "early":
-            return self._hint or self.tr("Released too early: nothing happened")
+            return self._hint or self.tr("Released too early")
         if state == "done":
             return self.tr("Confirmed")
         return self.tr("Hold for {seconds} s").format(seconds=f"{self._hold_s:.3g}")

@@ -1,8 +1,8 @@
-"""Labels that wrap."""
+"""Labels that wrap, and texts they show."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtWidgets import QFrame, QLabel
 
 
@@ -36,3 +36,14 @@ def say(label: QLabel, text: str) -> None:
     if text != label.text():
         label.setText(text)
     label.setVisible(bool(text))
+
+
+def duration_text(seconds: float) -> str:
+    """Return a time as people say it: 40 s, 14 min, 1 h 20 min."""
+    translate = QCoreApplication.translate
+    if seconds < 59.5:
+        return translate("Duration", "{s} s").format(s=max(round(seconds), 1))
+    minutes = round(seconds / 60)
+    if minutes < 60:
+        return translate("Duration", "{min} min").format(min=minutes)
+    return translate("Duration", "{h} h {min} min").format(h=minutes // 60, min=minutes % 60)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetricsF, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
@@ -56,13 +56,13 @@ class OmegaBar(QWidget):
             return self.tr("Omega is the share of the dropped candies that stay (paper, Sec. III-A).")
         omega, threshold = _numbers(self._omega, self._threshold)
         if self._omega > self._threshold:
-            said = self.tr("above the threshold {threshold}: an open container.")
+            verdict = self.tr("above the threshold {threshold}.")
         else:
-            said = self.tr("not above the threshold {threshold}: no open container.")
+            verdict = self.tr("not above the threshold {threshold}.")
         stayed = self.tr("Omega {omega} of 1: {percent} % of the dropped candies stayed,").format(
             omega=omega, percent=f"{100 * self._omega:.1f}"
         )
-        return stayed + " " + said.format(threshold=threshold)
+        return stayed + " " + verdict.format(threshold=threshold)
 
     def sizeHint(self) -> QSize:
         """Return a good size."""
@@ -115,7 +115,7 @@ class OmegaBar(QWidget):
         self._paint_scale(painter, bar, x)
 
     def _paint_scale(self, painter: QPainter, bar: QRectF, x: float) -> None:
-        """Write the threshold beside its mark, and 0 and 1 where there is room."""
+        """Write the threshold beside its mark, and 0 and 1 where they fit."""
         painter.setFont(smaller(self.font()))
         metrics = QFontMetricsF(painter.font())
         painter.setPen(theme_of(self).color("muted"))
@@ -130,12 +130,6 @@ class OmegaBar(QWidget):
             painter.drawText(line, Qt.AlignmentFlag.AlignLeft, "0")
         if max(x + 5, box.right()) < bar.right() - digit:
             painter.drawText(line, Qt.AlignmentFlag.AlignRight, "1")
-
-    def changeEvent(self, event: QEvent) -> None:
-        """Repaint in another theme."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()
 
 
 def _numbers(omega: float | None, threshold: float) -> tuple[str, str]:

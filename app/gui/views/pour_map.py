@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees, pi, radians
+from math import degrees, radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,24 +12,24 @@ from PySide6.QtCore import QEvent, QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QHelpEvent, QKeyEvent, QMouseEvent, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
-from app.gui.views.polar_layout import PolarLayout
-from app.gui.views.pour_map_painter import LEGEND_PX, RIM_PX, PourMapPainter, points_text
+from app.gui.views.pour_map_painter import LEGEND_PX, RIM_PX, PourMapPainter, place, points_text
+from core.report.plot_geometry import PourMapLayout
 
 _STEPS = {Qt.Key.Key_Left: (1, 0), Qt.Key.Key_Right: (-1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1)}
 
 
 @dataclass(frozen=True)
-class PourCell:
+class MappedPour:
     """One pour as the map shows it.
 
     Attributes:
         i: index of the direction.
         j: index of the distance.
-        theta_rad: direction from p_E to the pivot, against the base's x-axis.
+        theta_rad: direction from p_E to the pivot, from the base's x-axis.
         indent_m: L_idt, distance of the pivot from p_E.
         p: particle-in-object ratio P, 0..1, mean over the packings.
         spread: standard deviation of P over the packings; None with one packing.
-        is_feasible: whether the arm can make it; None when nobody has looked yet.
+        is_feasible: whether the arm can make it; None when that was not checked yet.
         reason: why it is not feasible, or what is worth knowing of it.
     """
 
@@ -44,7 +44,7 @@ class PourCell:
 
 
 class PourMap(QWidget):
-    """Polar map of the pours, seen from above; base x points right, y up, unless it is turned.
+    """Polar map of the pours, seen from above; base x points right, y up, unless it is rotated.
 
     Attributes:
         selected: (i, j) the user picked with mouse or keys; not sent by `select`.
@@ -60,7 +60,7 @@ class PourMap(QWidget):
         self.setMouseTracking(True)
         policy = QSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setSizePolicy(policy)
-        self._cells: dict[tuple[int, int], PourCell] = {}
+        self._cells: dict[tuple[int, int], MappedPour] = {}
         self._chosen: tuple[int, int] | None = None
         self._selection: tuple[int, int] | None = None
         self._rotation_deg = 0.0
@@ -74,10 +74,10 @@ class PourMap(QWidget):
 
     @property
     def rotation_deg(self) -> float:
-        """How far the map is turned, anticlockwise."""
+        """How far the map is rotated, anticlockwise."""
         return self._rotation_deg
 
-    def set_pours(self, cells: Sequence[PourCell], chosen: tuple[int, int] | None) -> None:
+    def set_pours(self, cells: Sequence[MappedPour], chosen: tuple[int, int] | None) -> None:
         """Show the pours of one grid and which was chosen; none: an empty map that says so.
 
         The comparison is dropped when the grid's shape changes; the selection stays where it can, else it
@@ -113,7 +113,7 @@ class PourMap(QWidget):
         self._refresh()
 
     def set_rotation(self, deg: float) -> None:
-        """Turn the map anticlockwise, as the 3D view is turned; numbers stay upright."""
+        """Rotate the map anticlockwise, as the 3D view is; numbers stay upright."""
         self._rotation_deg = deg
         self.update()
 
@@ -127,7 +127,7 @@ class PourMap(QWidget):
 
     def cell_center(self, i: int, j: int) -> QPointF:
         """Return where on the widget a pour's cell has its middle, px."""
-        return self._layout().middle(i, j)
+        return place(self._center(), *self._layout().middle(i, j))
 
     def describe(self, i: int, j: int) -> str:
         """Return everything known of a pour, a line each."""
@@ -146,18 +146,18 @@ class PourMap(QWidget):
                 )
             )
         if cell.is_feasible is None:
-            lines.append(self.tr("not yet checked whether the arm can do it"))
+            lines.append(self.tr("not yet checked with the arm"))
         elif cell.is_feasible:
-            lines.append(self.tr("the arm can do it"))
+            lines.append(self.tr("the arm can make it"))
         else:
-            lines.append(self.tr("the arm cannot do it"))
+            lines.append(self.tr("the arm cannot make it"))
         if cell.reason:
             lines[-1] += ": " + cell.reason
         if (i, j) == self._chosen:
             lines.insert(0, self.tr("chosen"))
         return "\n".join(lines)
 
-    def _describe_p(self, cell: PourCell) -> str:
+    def _describe_p(self, cell: MappedPour) -> str:
         if cell.spread is None:
             return self.tr("P {percent:.0f} % (one packing)").format(percent=100 * cell.p)
         return self.tr("P {percent:.0f} ± {spread:.0f} % over the packings").format(
@@ -169,22 +169,23 @@ class PourMap(QWidget):
         return QSize(400, 400 + LEGEND_PX)
 
     def minimumSizeHint(self) -> QSize:
-        """Return the least size it can be read at."""
+        """Return the smallest legible size."""
         return QSize(320, 320 + LEGEND_PX)
 
-    def _layout(self) -> PolarLayout:
+    def _layout(self) -> PourMapLayout:
         n_directions, n_rings = self.shape
-        thetas = [self._cells[i, 0].theta_rad for i in range(n_directions)] if self._cells else []
-        turn = radians(self._rotation_deg)
-        height = self.height() - LEGEND_PX
-        radius = max(min(self.width(), height) / 2 - RIM_PX, 40.0)
-        return PolarLayout(
-            QPointF(self.width() / 2, height / 2),
-            radius,
-            tuple(theta + turn for theta in thetas),
-            max(n_rings, 3),
-            pi / max(n_directions, 8),
-        )
+        rotation_rad = radians(self._rotation_deg)
+        thetas = (self._cells[i, 0].theta_rad + rotation_rad for i in range(n_directions))
+        radius = max(min(self._center().x(), self._center().y()) - RIM_PX, 40.0)
+        return PourMapLayout(tuple(thetas), max(n_rings, 3), radius)
+
+    def _center(self) -> QPointF:
+        return QPointF(self.width() / 2, (self.height() - LEGEND_PX) / 2)
+
+    def _cell_at(self, point: QPointF) -> tuple[int, int] | None:
+        offset = point - self._center()
+        found = self._layout().cell_at(offset.x(), -offset.y())
+        return found if found in self._cells else None
 
     def _pick(self, found: tuple[int, int]) -> None:
         if found != self._selection:
@@ -199,13 +200,13 @@ class PourMap(QWidget):
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         """Pick the pour under the mouse."""
-        found = self._layout().cell_at(event.position())
-        if event.button() == Qt.MouseButton.LeftButton and found in self._cells:
+        found = self._cell_at(event.position())
+        if event.button() == Qt.MouseButton.LeftButton and found is not None:
             self._pick(found)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         """Show a hand over what can be picked."""
-        is_over = self._layout().cell_at(event.position()) in self._cells
+        is_over = self._cell_at(event.position()) is not None
         self.setCursor(Qt.CursorShape.PointingHandCursor if is_over else Qt.CursorShape.ArrowCursor)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -222,28 +223,28 @@ class PourMap(QWidget):
         self._pick(((i + step[0]) % n_directions, min(max(j + step[1], 0), n_rings - 1)))
 
     def event(self, event: QEvent) -> bool:
-        """Tell all there is to know of the pour under the mouse, or what the map shows."""
+        """Show all that is known of the pour under the mouse, or what the map shows."""
         if isinstance(event, QHelpEvent) and event.type() == QEvent.Type.ToolTip:
-            found = self._layout().cell_at(QPointF(event.pos()))
-            text = self.describe(*found) if found is not None and found in self._cells else self._legend()
+            found = self._cell_at(QPointF(event.pos()))
+            text = self._legend() if found is None else self.describe(*found)
             QToolTip.showText(event.globalPos(), text, self)
             return True
         return super().event(event)
 
     def _legend(self) -> str:
         return self.tr(
-            "Each field is a pour: its direction around p_E and its distance from it.\n"
+            "Each cell is a pour: its direction from p_E and its distance from it.\n"
             "The number is P in per cent: how many candies landed inside.\n"
             "The arc at the inner edge is the spread over the packings; a full one is 25 points or more.\n"
-            "Hatched: the arm cannot do it. Star: chosen. Arrow keys move the selection."
+            "Hatched: the arm cannot make it. Star: chosen. Arrow keys move the selection."
         )
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint the cells, then what lies over them."""
-        painter = PourMapPainter(self, self._layout())
+        painter = PourMapPainter(self, self._layout(), self._center())
         painter.paint_rings()
         if not self._cells:
-            painter.paint_empty(self.tr("The pours appear here\nonce they are imagined"))
+            painter.paint_empty(self.tr("The pours appear here\nonce they have been imagined"))
         for key, cell in self._cells.items():
             other = None if self._other is None else float(self._other[key])
             away_px = 3.0 if key == self._chosen and other is not None else 0.0

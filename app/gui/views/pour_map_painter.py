@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, hypot, pi, radians, sin
+from math import cos, degrees, hypot, pi, radians, sin
 
 from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QLinearGradient, QPainter, QPainterPath, QPen, QPolygonF
@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QWidget
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.color_scale import text_on, viridis
 from app.gui.views.painting import hatch, smaller, tabular
-from app.gui.views.polar_layout import HOLE_RATIO, PolarLayout
+from core.report.plot_geometry import Arc, PourMapLayout
 
 RIM_PX = 26
 """Around the rings, for the directions."""
@@ -20,10 +20,13 @@ LEGEND_PX = 40
 """Under them, for the colour scale and the rings' distances."""
 _FULL_ARC = 0.25
 """Spread at which the arc is as wide as its cell."""
-
-
 _SMALL_POINTS = 10.0
 """Font size up to which the star is small, too."""
+
+
+def place(center: QPointF, radius: float, angle_rad: float) -> QPointF:
+    """Return the point at a polar place about the map's centre; y of the screen points down."""
+    return center + QPointF(radius * cos(angle_rad), -radius * sin(angle_rad))
 
 
 def points_text(difference: float) -> str:
@@ -35,14 +38,15 @@ def points_text(difference: float) -> str:
 class PourMapPainter(QPainter):
     """A painter on a pour map, for one paint event."""
 
-    def __init__(self, widget: QWidget, layout: PolarLayout) -> None:
+    def __init__(self, widget: QWidget, layout: PourMapLayout, center: QPointF) -> None:
         super().__init__(widget)
         self.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._theme = theme_of(widget)
         self._font = widget.font()
         self._size = widget.size()
         self._layout = layout
-        depth = layout.ring_px(1)[0] - layout.ring_px(0)[0]
+        self._center = center
+        depth = layout.ring(1)[0] - layout.ring(0)[0]
         self._points = min(max(self._font.pointSizeF() * depth / 40, 9.0), 15.0)
 
     @property
@@ -54,15 +58,15 @@ class PourMapPainter(QPainter):
         self.setBrush(Qt.BrushStyle.NoBrush)
         self.setPen(QPen(self._theme.color("line"), 1))
         for j in range(self._layout.n_rings):
-            radius = self._layout.ring_px(j)[1]
-            self.drawEllipse(self._layout.center, radius, radius)
+            radius = self._layout.ring(j)[1]
+            self.drawEllipse(self._center, radius, radius)
 
     def paint_empty(self, text: str) -> None:
         """Say what will be here."""
         self.setPen(self._theme.color("muted"))
         self.setFont(self._font)
-        box = QRectF(0, 0, 2 * self._layout.radius_px, 60)
-        box.moveCenter(self._layout.center)
+        box = QRectF(0, 0, 2 * self._layout.radius, 60)
+        box.moveCenter(self._center)
         self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def paint_cell(
@@ -77,11 +81,11 @@ class PourMapPainter(QPainter):
     ) -> None:
         """Draw one cell: its colour and number, its spread, and whether the arm cannot do it.
 
-        The number stands `away_px` off the middle, away from where the star would be.
+        The number is `away_px` off the middle, away from where the star would be.
         """
         color = viridis(p)
         ink = text_on(color)
-        path = self._layout.cell(i, j, 1.0)
+        path = self._outline(i, j, 1.0)
         self.fillPath(path, color)
         if is_hatched:
             faint = QColor(ink)
@@ -89,14 +93,31 @@ class PourMapPainter(QPainter):
             hatch(self, path, faint)
         if spread:
             arc = self._layout.inner_arc(i, j, min(spread / _FULL_ARC, 1.0), 5.0)
-            self.strokePath(arc, QPen(ink, 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+            self.strokePath(self._path(arc), QPen(ink, 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
         lines = [(f"{100 * p:.0f}", self._points, True)]
         if other is not None:
             lines.append((points_text(p - other), self._points - 1.5, False))
-        middle = self._layout.middle(i, j)
+        middle = place(self._center, *self._layout.middle(i, j))
         off = middle - self._star(i, j)
         middle += off * (away_px / max(hypot(off.x(), off.y()), 1.0))
         self._write(middle, lines, ink, color if is_hatched else None)
+
+    def _outline(self, i: int, j: int, inset_px: float) -> QPainterPath:
+        """The outline of a cell, drawn in by `inset_px` on every side."""
+        path = self._path(*self._layout.cell(i, j, inset_px))
+        path.closeSubpath()
+        return path
+
+    def _path(self, *arcs: Arc) -> QPainterPath:
+        """Arcs, joined by straight lines."""
+        path = QPainterPath()
+        for arc in arcs:
+            box = QRectF(0, 0, 2 * arc.radius, 2 * arc.radius)
+            box.moveCenter(self._center)
+            if path.isEmpty():
+                path.arcMoveTo(box, degrees(arc.begin_rad))
+            path.arcTo(box, degrees(arc.begin_rad), degrees(arc.sweep_rad))
+        return path
 
     def _write(
         self, middle: QPointF, lines: Sequence[tuple[str, float, bool]], ink: QColor, plate: QColor | None
@@ -126,7 +147,7 @@ class PourMapPainter(QPainter):
     def paint_chosen(self, i: int, j: int, p: float) -> None:
         """Outline the chosen cell inside and put a star into its corner."""
         ink = text_on(viridis(p))
-        self.strokePath(self._layout.cell(i, j, 3.0), QPen(ink, 2))
+        self.strokePath(self._outline(i, j, 3.0), QPen(ink, 2))
         center, size = self._star(i, j), self._star_px
         points = [
             center + QPointF(r * sin(k * pi / 5), -r * cos(k * pi / 5))
@@ -138,13 +159,13 @@ class PourMapPainter(QPainter):
 
     def _star(self, i: int, j: int) -> QPointF:
         """Where the star of a cell is: in its outer corner."""
-        radius = self._layout.ring_px(j)[1] - self._star_px - 4.5
+        radius = self._layout.ring(j)[1] - self._star_px - 4.5
         angle = self._layout.directions_rad[i] + self._layout.half_rad - (self._star_px + 5.0) / radius
-        return self._layout.at(radius, angle)
+        return place(self._center, radius, angle)
 
     def paint_selected(self, i: int, j: int, has_focus: bool) -> None:
         """Outline the selected cell outside, more strongly while keys move it."""
-        path = self._layout.cell(i, j, -1.0)
+        path = self._outline(i, j, -1.0)
         self.strokePath(path, QPen(self._theme.color("window"), 7))
         width = 4.0 if has_focus else 3.0
         self.strokePath(path, QPen(self._theme.color("text"), width))
@@ -156,19 +177,18 @@ class PourMapPainter(QPainter):
         self.setPen(self._theme.color("muted"))
         for deg in range(0, 360, 45):
             text = f"{deg}°" if deg else "x 0°"
-            middle = self._layout.at(self._layout.radius_px + RIM_PX / 2 + 1, radians(deg + rotation_deg))
+            middle = place(self._center, self._layout.radius + RIM_PX / 2 + 1, radians(deg + rotation_deg))
             box = QRectF(0, 0, metrics.horizontalAdvance(text) + 2, metrics.height())
             box.moveCenter(middle)
             self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
         if not has_center:
             return
-        hole = HOLE_RATIO * self._layout.radius_px
-        box = QRectF(0, 0, 2 * hole, metrics.height())
-        box.moveCenter(self._layout.center)
+        box = QRectF(0, 0, 2 * self._layout.hole, metrics.height())
+        box.moveCenter(self._center)
         self.drawText(box, Qt.AlignmentFlag.AlignCenter, "p_E")
 
     def paint_legend(self, indents_m: Sequence[float], other_label: str) -> None:
-        """Draw the colour scale, 0 to 100 %, and say how far the rings are from p_E."""
+        """Draw the colour scale, 0 to 100 %, and write how far the rings are from p_E."""
         top = self._size.height() - LEGEND_PX + 4
         self.setFont(smaller(self._font))
         metrics = QFontMetricsF(self.font())

@@ -14,9 +14,9 @@ _RADIUS_PX = 3.0
 
 
 class ProgressLine(QWidget):
-    """Not a QProgressBar: that one repaints the window at once with each value, and with it every 3D view.
+    """Not a QProgressBar: that repaints the window at each value, and every 3D view with it.
 
-    Hatched as long as nobody knows how much there is to do.
+    Hatched as long as the amount of work is unknown.
     """
 
     def __init__(self) -> None:
@@ -26,7 +26,7 @@ class ProgressLine(QWidget):
 
     @property
     def fraction(self) -> float | None:
-        """What is done, 0 to 1; none if nobody knows."""
+        """What is done, 0 to 1; none if unknown."""
         return self._fraction
 
     def set_fraction(self, fraction: float | None) -> None:

@@ -1,10 +1,10 @@
-"""The mark of a stage's state: a shape of its own for each, so that no colour has to be told apart."""
+"""The mark of a stage's state: each has its own shape, so that nobody depends on its colour."""
 
 from __future__ import annotations
 
 from typing import Literal
 
-from PySide6.QtCore import QCoreApplication, QEvent, QPointF, QRectF, QSize, Qt
+from PySide6.QtCore import QCoreApplication, QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 
@@ -23,7 +23,7 @@ MARK_PX = 16
 
 
 def state_word(state: State) -> str:
-    """Return the word that stands beside the mark, in the user's language."""
+    """Return the word shown beside the mark, in the user's language."""
     words = {
         "empty": QCoreApplication.translate("StateMark", "empty"),
         "running": QCoreApplication.translate("StateMark", "running"),
@@ -77,7 +77,7 @@ class StateMark(QWidget):
         self.setObjectName("state_mark")
         self._state: State = state
         self.setFixedSize(MARK_PX, MARK_PX)
-        self._tell()
+        self._update_texts()
 
     @property
     def state(self) -> State:
@@ -87,10 +87,10 @@ class StateMark(QWidget):
     def set_state(self, state: State) -> None:
         """Show another state."""
         self._state = state
-        self._tell()
+        self._update_texts()
         self.update()
 
-    def _tell(self) -> None:
+    def _update_texts(self) -> None:
         self.setToolTip(state_word(self._state))
         self.setAccessibleName(state_word(self._state))
 
@@ -103,9 +103,3 @@ class StateMark(QWidget):
         painter = QPainter(self)
         paint_mark(painter, QRectF(self.rect()), self._state, theme_of(self))
         painter.end()
-
-    def changeEvent(self, event: QEvent) -> None:
-        """Repaint in another theme."""
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()

@@ -13,16 +13,12 @@ from dataclasses import dataclass
 from core.collision import CollisionModel
 from core.errors import InputError, StageError, WorkerError
 from core.evaluation.fitting.fitted import FittedParameter, parameters_of_trial, start_values
-from core.evaluation.fitting.progress import PartReporter
 from core.evaluation.fitting.scores import CaseScore, FitScore
-from core.evaluation.fitting.search import search
-from core.evaluation.fitting.trials import FitResult, FitStep, FitTrial
-from core.evaluation.verdicts import measure_by
-from core.imagination.imagine import imagine_containability
-from core.imagination.judging import capacity_share
+from core.evaluation.fitting.search import FitResult, FitStep, FitTrial, PartReporter, search
+from core.evaluation.judging import drop_and_fill
 from core.parameters import Parameters
 from core.progress import Reporter
-from core.workers import RunHere, Task, TaskRunner, WorkerReporter
+from core.workers import Task, TaskRunner, WorkerReporter
 
 STAGE = "fitting"
 
@@ -71,7 +67,7 @@ def fit(
     request: FitRequest,
     runner: TaskRunner,
     reporter: Reporter,
-    tell: Callable[[ContainabilityStep], None],
+    report: Callable[[ContainabilityStep], None],
     judge: JudgeCase | None = None,
 ) -> ContainabilityResult:
     """Find the values with the largest margin: smallest score of a container less the largest of any other.
@@ -81,7 +77,7 @@ def fit(
         request: what to fit.
         runner: where to judge; the cases of a seed are judged side by side.
         reporter: receives the progress; asked to stop, what was found so far is the result.
-        tell: told after each trial.
+        report: called after each trial.
         judge: returns the score; none: by imagination. A function of a module, for it is sent to workers.
 
     Raises:
@@ -93,7 +89,7 @@ def fit(
     _check(cases)
     judging = _Judging(cases, request, runner, reporter, judge or score_of)
     start = start_values(request.fitted, request.parameters)
-    return search(request.fitted, start, judging, request.n_trials, request.sampler_seed, tell)
+    return search(request.fitted, start, judging, request.n_trials, request.sampler_seed, report)
 
 
 def score_of(case: FitCase, parameters: Parameters) -> float:
@@ -104,10 +100,8 @@ def score_of(case: FitCase, parameters: Parameters) -> float:
         Cancelled: somebody asked to stop.
     """
     seeded = parameters.model_copy(update={"seed": case.seed})
-    found = imagine_containability(case.model, seeded)
-    if measure_by(parameters) == "Omega":
-        return found.omega
-    return capacity_share(case.model, found, seeded, RunHere(), WorkerReporter())
+    found, share = drop_and_fill(case.model, seeded, WorkerReporter())
+    return found.omega if share is None else share
 
 
 class _Judging:

@@ -107,7 +107,7 @@ def threshold_name(parameters: Parameters) -> str:
 
 
 def is_for_spills(one: FittedParameter) -> bool:
-    """Whether measured spills can tell its value."""
+    """Whether measured spills depend on it."""
     return one.name.startswith(_SPILLING_GROUPS)
 
 
@@ -133,18 +133,7 @@ def parameters_of_trial(
     Raises:
         InputError: the values do not fit together.
     """
-    return parameters if number == 0 else with_values(parameters, fitted, values)
-
-
-def with_values(
-    parameters: Parameters, fitted: Iterable[FittedParameter], values: Mapping[str, float]
-) -> Parameters:
-    """Return parameters with other values of the fitted ones.
-
-    Raises:
-        InputError: they do not fit together.
-    """
-    return apply_settings(parameters, settings_of(fitted, values))
+    return parameters if number == 0 else apply_settings(parameters, settings_of(fitted, values))
 
 
 def _with_tie(one: FittedParameter, named: Sequence[str]) -> FittedParameter:
@@ -177,8 +166,8 @@ def _check_use(name: str) -> None:
         )
     if not name.startswith((*_JUDGING_GROUPS, *_SPILLING_GROUPS)):
         raise InputError(
-            f"{name} cannot be fitted: labels can tell parameters of {', '.join(_JUDGING_GROUPS)}, "
-            f"and measured spills those of {', '.join(_SPILLING_GROUPS)}."
+            f"{name} cannot be fitted: labels depend on parameters of {', '.join(_JUDGING_GROUPS)}, "
+            f"and measured spills on those of {', '.join(_SPILLING_GROUPS)}."
         )
 
 
@@ -194,7 +183,7 @@ def _bounds(text: str, bounds: str) -> tuple[float, float]:
     try:
         found = float(low), float(high)
     except ValueError as error:
-        raise InputError(f"'--parameter {text}' has no range: write NAME=LOW:HIGH, in SI units.") from error
+        raise InputError(f"'{text}' has no range: write NAME=LOW:HIGH, in SI units.") from error
     if not found[0] < found[1]:
-        raise InputError(f"'--parameter {text}' has no range: LOW must be below HIGH.")
+        raise InputError(f"'{text}' has no range: LOW must be below HIGH.")
     return found

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import AbstractContextManager
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,30 +11,24 @@ from core.collision import CollisionModel
 from core.errors import InputError
 from core.evaluation.fitting.containability import FitRequest
 from core.evaluation.fitting.fitted import parameters_of_trial, start_values
-from core.evaluation.fitting.progress import PartReporter
-from core.evaluation.fitting.search import search
+from core.evaluation.fitting.search import FitResult, FitStep, FitTrial, PartReporter, search
 from core.evaluation.fitting.spills import SpillMeasurement
-from core.evaluation.fitting.trials import FitResult, FitStep, FitTrial
-from core.imagination.body import BodyFile, body_files
-from core.imagination.containability import object_at_rest
-from core.imagination.cup import cup_parts
-from core.imagination.packing import CupRun, pack_cup, packing_task
-from core.imagination.pouring import pivots_m
-from core.imagination.pours import Pour, PourOutcome, replay_task
+from core.imagination.context import ImaginationContext
+from core.imagination.packing import CupRuns, pack_cup
+from core.imagination.pours import Pour, pivots_m, replay_task
 from core.imagination.results import Footprint
 from core.parameters import Parameters
 from core.progress import Reporter
-from core.workers import Task, TaskRunner
+from core.workers import TaskRunner
 
 STAGE = "fitting pours"
-_CUP = "cup"
 _CUP_SHARE = 0.3
 """Of a trial's progress; the rest is the pours'."""
 
 
 @dataclass(frozen=True)
 class PourTarget:
-    """An object that was poured into, as it stood.
+    """An object that was poured into, as it was placed.
 
     Attributes:
         model: its body.
@@ -92,13 +84,13 @@ def fit_pours(
     request: FitRequest,
     runner: TaskRunner,
     reporter: Reporter,
-    tell: Callable[[PourStep], None],
+    report: Callable[[PourStep], None],
     judge: JudgePours | None = None,
 ) -> PourResult:
     """Find the values with which the imagined spills are nearest to the measured ones.
 
-    Cup and object are imagined one after the other (`pouring.mode` "replay"), which tells candies that stayed
-    in the cup from spilled ones.
+    Cup and object are imagined one after the other (`pouring.mode` "replay"), which tells apart candies
+    that stayed in the cup and spilled ones.
 
     Args:
         measurements: at least one.
@@ -106,7 +98,7 @@ def fit_pours(
         request: what to fit.
         runner: where to compute.
         reporter: receives the progress; asked to stop, what was found so far is the result.
-        tell: told after each trial.
+        report: called after each trial.
         judge: returns the spilled candies of each measurement; none: by imagination.
 
     Raises:
@@ -121,22 +113,20 @@ def fit_pours(
     start = start_values(request.fitted, request.parameters)
     for row in rows:
         pack_cup(row.of_parameters(request.parameters), 0)  # refused before hours of work
-    with _bodies(targets, request.parameters) as files:
-        used = judge or _Imagining(rows, files, runner)
+    imagined = judge or _Imagining(rows, ImaginationContext(request.parameters, runner, reporter))
 
-        def judged(number: int, values: Mapping[str, float], _best: FitTrial[PourScore] | None) -> PourScore:
-            parameters = parameters_of_trial(request.parameters, request.fitted, number, values)
-            part = PartReporter(reporter, STAGE, number, 1, n_trials)
-            return PourScore(tuple(used(parameters, part)), measured)
+    def judged(number: int, values: Mapping[str, float], _best: FitTrial[PourScore] | None) -> PourScore:
+        parameters = parameters_of_trial(request.parameters, request.fitted, number, values)
+        part = PartReporter(reporter, STAGE, number, 1, n_trials)
+        return PourScore(tuple(imagined(parameters, part)), measured)
 
-        return search(request.fitted, start, judged, request.n_trials, request.sampler_seed, tell)
+    return search(request.fitted, start, judged, request.n_trials, request.sampler_seed, report)
 
 
 @dataclass(frozen=True)
 class _Row:
     """A measurement with everything that is needed to imagine it."""
 
-    body: str
     target: PourTarget
     pour: Pour
     spilled: float
@@ -158,11 +148,10 @@ class _Row:
                 f"{one.spilled:g} of {n_pour} candies cannot have been spilled at '{one.name}'; give the "
                 "column n_pour or set pouring.n_pour."
             )
-        pivot = pivots_m(target.footprint, np.array([one.theta_rad]), np.array([one.indent_m]))[0, 0]
+        plane_E = target.footprint.raised(parameters.pouring.pivot_height_m)
+        pivot = pivots_m(plane_E, np.array([one.theta_rad]), np.array([one.indent_m]))[0, 0]
         seed = parameters.seed if one.seed is None else one.seed
-        return cls(
-            _body_name(one.name, targets), target, Pour(pivot, one.theta_rad), one.spilled, n_pour, seed
-        )
+        return cls(target, Pour(pivot, one.theta_rad), one.spilled, n_pour, seed)
 
     def of_parameters(self, parameters: Parameters) -> Parameters:
         """The parameters as they hold for this row."""
@@ -173,50 +162,31 @@ class _Row:
 class _Imagining:
     """Imagines all rows: first the cup alone, once for each number of candies and seed, then the pours."""
 
-    def __init__(self, rows: Sequence[_Row], files: Mapping[str, BodyFile], runner: TaskRunner) -> None:
+    def __init__(self, rows: Sequence[_Row], context: ImaginationContext) -> None:
         self._rows = rows
-        self._files = files
-        self._runner = runner
-        self._of_row = [(row.n_pour, row.seed) for row in rows]
+        self._context = context
 
     def __call__(self, parameters: Parameters, reporter: Reporter) -> list[float]:
-        runs = self._cup_runs(parameters, PartReporter(reporter, STAGE, 0, _CUP_SHARE, 1))
-        tasks: list[Task] = []
-        for row, key in zip(self._rows, self._of_row, strict=True):
-            own = row.of_parameters(parameters)
-            target = object_at_rest(row.target.model, self._files[row.body], own)
-            tasks += [replay_task(target, run, row.pour.T_world_E, own, False) for run in runs[key]]
-        part = PartReporter(reporter, STAGE, _CUP_SHARE, 1 - _CUP_SHARE, 1)
-        outcomes: list[PourOutcome] = self._runner.run(tasks, STAGE, part)
-        n_packings = parameters.pouring.n_packings
-        grouped = _grouped(outcomes, n_packings)
-        return [float(np.mean([outcome.n_spilled for outcome in found])) for found in grouped]
+        cups = replace(self._context, reporter=PartReporter(reporter, STAGE, 0, _CUP_SHARE, 1))
+        pours = replace(self._context, reporter=PartReporter(reporter, STAGE, _CUP_SHARE, 1 - _CUP_SHARE, 1))
+        own = [row.of_parameters(parameters) for row in self._rows]
+        runs = self._cup_runs(own, cups)
+        tasks = []
+        for row, its in zip(self._rows, own, strict=True):
+            context = pours.reading(its)
+            target, cup_runs = context.target(row.target.model), runs.of_packings(context)
+            tasks += [replay_task(target, run, row.pour.T_world_E, its, False) for run in cup_runs]
+        spilled = [outcome.n_spilled for outcome in pours.run(tasks, STAGE)]
+        by_row = np.reshape(spilled, (len(self._rows), parameters.pouring.n_packings))
+        means: list[float] = by_row.mean(axis=1).tolist()
+        return means
 
-    def _cup_runs(self, parameters: Parameters, reporter: Reporter) -> dict[tuple[int, int], list[CupRun]]:
-        n_packings = parameters.pouring.n_packings
-        firsts = {key: row for row, key in zip(self._rows, self._of_row, strict=True)}
-        tasks = [
-            packing_task(self._files[_CUP], row.of_parameters(parameters), packing)
-            for row in firsts.values()
-            for packing in range(n_packings)
-        ]
-        runs = _grouped(self._runner.run(tasks, STAGE, reporter), n_packings)
-        return dict(zip(firsts, runs, strict=True))
-
-
-def _bodies(
-    targets: Mapping[str, PourTarget], parameters: Parameters
-) -> AbstractContextManager[dict[str, BodyFile]]:
-    bodies: dict[str, Any] = {
-        _body_name(name, targets): (one.model.parts, not one.model.is_convex) for name, one in targets.items()
-    }
-    return body_files(**bodies | {_CUP: (cup_parts(parameters.pouring.cup), False)})
-
-
-def _body_name(name: str, targets: Mapping[str, PourTarget]) -> str:
-    """Name of a body's file, whatever the object is called."""
-    return f"object_{list(targets).index(name)}"
-
-
-def _grouped(found: Sequence[Any], size: int) -> list[list[Any]]:
-    return [list(found[k : k + size]) for k in range(0, len(found), size)]
+    @staticmethod
+    def _cup_runs(own: Sequence[Parameters], context: ImaginationContext) -> CupRuns:
+        """The runs that the rows need, all side by side."""
+        runs = CupRuns()
+        first, *others = {(its.pouring.n_pour, its.seed): its for its in own}.values()
+        for its in others:
+            runs.prepare(context.reading(its))
+        runs.of_packings(context.reading(first))
+        return runs

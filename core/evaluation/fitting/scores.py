@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from core.evaluation.fitting.threshold import best_threshold, n_right
-
+_DIGITS = 4
 _MEAN_WEIGHT = 0.01
-"""Of the mean distance in the objective: it tells equal margins apart and gives the search a slope where the
+"""Of the mean distance in the objective: it ranks equal margins and gives the search a slope where the
 margin has none (all containers empty, say), and never outweighs a difference of margins above 0.02."""
 
 
@@ -112,9 +112,41 @@ class FitScore:
         return [one.score for one in self.scores if one.is_container == is_container]
 
 
+def best_threshold(containers: Sequence[float], others: Sequence[float]) -> float:
+    """Return the threshold that separates containers from other objects best.
+
+    It is the middle between the smallest score of a container and the largest of another object. Where these
+    overlap it is the threshold that judges most of them rightly; among equally good ones the one in the
+    widest gap between two scores, then the lowest.
+
+    Args:
+        containers: their scores, at least one.
+        others: of the non-containers, at least one.
+    """
+    smallest, largest = min(containers), max(others)
+    if smallest > largest:
+        return _rounded(largest, smallest)
+    known = sorted({0.0, *containers, *others})
+    gaps = list(zip(known, [*known[1:], 1.0], strict=True))
+    best = max(gaps, key=lambda gap: (n_right(containers, others, gap[0]), gap[1] - gap[0], -gap[0]))
+    return _rounded(*best)
+
+
+def n_right(containers: Sequence[float], others: Sequence[float], threshold: float) -> int:
+    """Count the scores that a threshold judges rightly: above it is a container."""
+    return sum(score > threshold for score in containers) + sum(score <= threshold for score in others)
+
+
 def _place(one: CaseScore) -> tuple[str, int]:
     return one.name, one.seed
 
 
 def _named(one: CaseScore) -> list[Any]:
     return [round(one.score, 6), one.name]
+
+
+def _rounded(low: float, high: float) -> float:
+    """The middle, with as few digits as separate the two."""
+    middle = (low + high) / 2
+    short = round(middle, _DIGITS)
+    return short if low <= short < high else middle

@@ -7,20 +7,116 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from core.errors import Cancelled
 from core.evaluation.fitting.fitted import FittedParameter
-from core.evaluation.fitting.trials import FitResult, FitStep, FitTrial, S
+from core.progress import Reporter
 
 if TYPE_CHECKING:
     import optuna
 
 _FEWEST_FOR_IMPORTANCE = 8
 _GOOD_SHARE = 0.25
-"""Importance tells what distinguishes this share of the trials, the best, from all others."""
+"""Importance is what distinguishes this share of the trials, the best, from all others."""
 _STARTUP = 10
 """Trials at random before the search learns from them."""
+
+
+class TrialScore(Protocol):
+    """What a trial is worth."""
+
+    @property
+    def rank(self) -> tuple[float, ...]:
+        """Decides which of two trials is better: the larger one."""
+
+    @property
+    def objective(self) -> float:
+        """What the search maximises."""
+
+    @property
+    def is_given_up(self) -> bool:
+        """Whether the trial was ended early because it could not become the best."""
+
+
+S = TypeVar("S", bound=TrialScore)
+
+
+@dataclass(frozen=True)
+class FitTrial(Generic[S]):
+    """One set of values that was tried.
+
+    Attributes:
+        number: from 0, which has the values to start from.
+        values: by the names of the fitted parameters.
+        score: what they are worth.
+    """
+
+    number: int
+    values: Mapping[str, float]
+    score: S
+
+
+@dataclass(frozen=True)
+class FitStep(Generic[S]):
+    """Reported after each trial.
+
+    Attributes:
+        trial: that is done now.
+        best: so far.
+        n_trials: in all.
+        importance: share of each fitted parameter in the differences between trials; empty as long as there
+            are too few.
+    """
+
+    trial: FitTrial[S]
+    best: FitTrial[S]
+    n_trials: int
+    importance: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def is_best(self) -> bool:
+        """Whether this trial is the best one so far."""
+        return self.trial.number == self.best.number
+
+
+@dataclass(frozen=True)
+class FitResult(Generic[S]):
+    """What a search ends with.
+
+    Attributes:
+        start: the trial with the values to start from.
+        best: of all trials; never worse than the start.
+        n_trials: that were requested.
+        n_done: that were done.
+        n_given_up: of these, ended early.
+        sampler_seed: of the search.
+        importance: as in `FitStep`.
+        is_cut_short: whether somebody asked to stop.
+    """
+
+    start: FitTrial[S]
+    best: FitTrial[S]
+    n_trials: int
+    n_done: int
+    n_given_up: int
+    sampler_seed: int
+    importance: Mapping[str, float]
+    is_cut_short: bool
+
+    def to_table(self) -> dict[str, Any]:
+        """Return how the search went as plain JSON, without values and scores."""
+        return {
+            "sampler": "optuna TPE",
+            "sampler_seed": self.sampler_seed,
+            "trials": self.n_trials,
+            "done": self.n_done,
+            "given_up": self.n_given_up,
+            "best": self.best.number,
+            "is_cut_short": self.is_cut_short,
+        }
+
 
 Judge = Callable[[int, Mapping[str, float], "FitTrial[S] | None"], S]
 """Judges (number of the trial, values, best so far or none)."""
@@ -32,7 +128,7 @@ def search(
     judge: Judge[S],
     n_trials: int,
     seed: int,
-    tell: Callable[[FitStep[S]], None],
+    report: Callable[[FitStep[S]], None],
 ) -> FitResult[S]:
     """Try values, those to start from first; without a parameter to fit that is the only trial.
 
@@ -42,7 +138,7 @@ def search(
         judge: says what values are worth; may raise `Cancelled`.
         n_trials: at least one.
         seed: of the search.
-        tell: told after each trial.
+        report: called after each trial.
 
     Raises:
         Cancelled: somebody asked to stop before the first trial was done.
@@ -68,7 +164,7 @@ def search(
             proposer.learn(trial.score.objective)
         if best is None or (not trial.score.is_given_up and trial.score.rank > best.score.rank):
             best = trial
-        tell(FitStep(trial, best, n_trials, proposer.importance()))
+        report(FitStep(trial, best, n_trials, proposer.importance()))
     if best is None:
         raise ValueError("a search needs at least one trial")
     return FitResult(
@@ -84,7 +180,7 @@ def search(
 
 
 class _Proposer:
-    """An optuna study that is asked and told by hand; optuna is imported here and nowhere else."""
+    """An optuna study, driven step by step; optuna is imported here and nowhere else."""
 
     def __init__(self, fitted: Sequence[FittedParameter], seed: int) -> None:
         import optuna
@@ -103,18 +199,20 @@ class _Proposer:
         import optuna
 
         if all(one.holds(values[name]) for name, one in self._fitted.items()):
-            told = optuna.trial.create_trial(params=dict(values), distributions=self._ranges, value=objective)
-            self._study.add_trial(told)
+            trial = optuna.trial.create_trial(
+                params=dict(values), distributions=self._ranges, value=objective
+            )
+            self._study.add_trial(trial)
 
     def propose(self) -> dict[str, float]:
         """Return values to try; `learn` must follow before the next ones."""
-        self._asked = self._study.ask(self._ranges)
-        asked = self._asked.params
-        return {name: one.rounded(float(asked[name])) for name, one in self._fitted.items()}
+        self._proposed = self._study.ask(self._ranges)
+        values = self._proposed.params
+        return {name: one.rounded(float(values[name])) for name, one in self._fitted.items()}
 
     def learn(self, objective: float) -> None:
         """Take in what the proposed values are worth."""
-        self._study.tell(self._asked, objective)
+        self._study.tell(self._proposed, objective)
 
     def importance(self) -> dict[str, float]:
         """Return shares that add up to one, the largest first; empty if there are too few trials."""
@@ -125,5 +223,31 @@ class _Proposer:
             return {}
         evaluator = PedAnovaImportanceEvaluator(target_quantile=_GOOD_SHARE)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # that trials of equal worth tell nothing is seen
+            warnings.simplefilter("ignore", UserWarning)  # trials of equal worth: seen in the result
             return dict(get_param_importances(self._study, evaluator=evaluator))
+
+
+class PartReporter(Reporter):
+    """Reports a part's progress as that of a longer work."""
+
+    def __init__(self, whole: Reporter, stage: str, begun: float, size: float, total: float) -> None:
+        """The part goes from `begun` to `begun + size` of `total`, in the whole's stage."""
+        super().__init__()
+        self._whole = whole
+        self._stage = stage
+        self._begun = begun
+        self._size = size
+        self._total = total
+
+    def progress(self, stage: str, done: float, total: float) -> None:  # noqa: ARG002
+        """Report it as the whole's."""
+        share = done / total if total else 1.0
+        self._whole.progress(self._stage, self._begun + self._size * share, self._total)
+
+    def warn(self, sentence: str) -> None:
+        """Pass it on."""
+        self._whole.warn(sentence)
+
+    def raise_if_cancelled(self) -> None:
+        """Ask the whole."""
+        self._whole.raise_if_cancelled()

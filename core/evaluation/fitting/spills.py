@@ -1,4 +1,4 @@
-"""Measured spills: a CSV that says what a real cup, or that of the truth world, spilled."""
+"""Measured spills: a CSV that says what a real cup, or that of the ground-truth simulation, spilled."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class SpillMeasurement:
     """One pour that somebody counted.
 
     Attributes:
-        name: the object's; it stood as its mesh stands.
+        name: the object's; it was upright as its mesh is.
         theta_rad: direction of the ray from the footprint's centre to the pivot, against the base x-axis.
         indent_m: L_idt, distance of the pivot from the footprint's centre.
         spilled: candies beside the object.

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from io import BytesIO
+from math import degrees, sqrt
 from pathlib import Path
 from typing import Literal
 
 from core.evaluation.evaluation import PICTURES_FOLDER, EvaluatedObject, Evaluation
 from core.evaluation.labels import Label
-from core.evaluation.pages.card_words import judged_sentence, poured_sentence
-from core.evaluation.pages.charts import place, seed_marks
 from core.evaluation.trials import Trial
 from core.report.media import data_uri
 
@@ -20,6 +19,8 @@ TROUBLES: tuple[State, ...] = ("misjudged", "spilled", "failed")
 _SEVERITY: tuple[State, ...] = (*TROUBLES, "right", "ambiguous")
 _PICTURE_PX = (320, 240)
 _JPEG_QUALITY = 82
+_DECIMALS = (0, 1, 2, 3)
+_NBSP = "\N{NO-BREAK SPACE}"
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,38 @@ def state_of(trial: Trial) -> State:
     return "failed" if trial.problem else "right"
 
 
+def judged_sentence(trial: Trial) -> str:
+    """Say what was judged, and why."""
+    if trial.score is None:
+        return f"Failed: {trial.problem}"
+    if trial.capacity_share is not None:
+        return _capacity_sentence(trial, trial.capacity_share)
+    verdict = "a container" if trial.is_judged_container else "not to be a container"
+    than = "more than" if trial.is_judged_container else "not more than"
+    return (
+        f"{trial.n_in} of {trial.n_drop} candies stayed: Omega {trial.score:.3f} is {than} the threshold of "
+        f"{trial.threshold:.4g}, so it was judged {verdict}."
+    )
+
+
+def poured_sentence(trial: Trial, n_pours: int) -> str:
+    """Say what became of the pours; empty if none was to be made."""
+    if trial.spilled:
+        *most, last = (str(count) for count in trial.spilled)
+        counts = f"{', '.join(most)} and {last}" if most else last
+        times = "once" if trial.n_pours == 1 else f"{trial.n_pours} times"
+        side = "" if trial.theta_rad is None else f" from {degrees(trial.theta_rad) % 360:.0f}\N{DEGREE SIGN}"
+        stuck = f" {sum(trial.in_cup)} stayed in the cup." if any(trial.in_cup) else ""
+        return f"Poured {times}{side}: {counts} of {trial.n_pour} candies spilled{_promised(trial)}.{stuck}"
+    if trial.score is not None and trial.problem:
+        return f"Failed: {trial.problem}"
+    if trial.label == "container" and trial.n_feasible == 0:
+        return "The arm can make none of the pours, which counts as spilled."
+    if trial.label == "container" and n_pours:
+        return "Not poured into, which counts as spilled."
+    return ""
+
+
 def _card(
     evaluation: Evaluation,
     one: EvaluatedObject,
@@ -95,9 +128,9 @@ def _card(
         judged_sentence(worst),
         poured_sentence(worst, evaluation.n_pours),
         _seeds_said(trials, worst),
-        seed_marks(trial for trial in trials if trial is not worst),
-        next(iter(seed_marks([worst])), None),
-        round(100 * place(worst.threshold), 1),
+        _marks(trial for trial in trials if trial is not worst),
+        next(iter(_marks([worst])), None),
+        _mark(worst.threshold),
     )
 
 
@@ -127,7 +160,7 @@ def _order(trial: Trial) -> tuple[int, str, float]:
 
 
 def _comfort(trial: Trial) -> float:
-    """The less, the worse: the way from the threshold to the right side; of a spill, its candies."""
+    """The less, the worse: the distance from the threshold, on the right side; of a spill, its candies."""
     if state_of(trial) == "spilled":
         return -float(sum(trial.spilled))
     if trial.score is None:
@@ -149,3 +182,61 @@ def _embedded(path: Path) -> str:
     content = BytesIO()
     small.save(content, "JPEG", quality=_JPEG_QUALITY, optimize=True)
     return data_uri("image/jpeg", content.getvalue())
+
+
+def _marks(trials: Iterable[Trial]) -> list[float]:
+    return [_mark(trial.score) for trial in trials if trial.score is not None]
+
+
+def _mark(score: float) -> float:
+    """Where a score lies on a card's scale from 0 to 1, in per cent: to the square root."""
+    return round(100 * min(1.0, sqrt(score)), 1)
+
+
+def _capacity_sentence(trial: Trial, share: float) -> str:
+    said, than = _share_texts(share, trial.threshold)
+    more = "more than" if trial.is_judged_container else "not more than"
+    return (
+        f"{_held(trial)}{said}{_NBSP}% of its convex hull, {more} the threshold "
+        f"of {than}{_NBSP}%{_strength(trial)}."
+    )
+
+
+def _held(trial: Trial) -> str:
+    """How a sentence on what it holds begins."""
+    if trial.capacity_candies is None or trial.capacity_ml is None:
+        return "It holds "
+    n = round(trial.capacity_candies)
+    if n == 0:
+        return "It holds less than one candy, " if trial.capacity_candies else "It holds no candy, "
+    candies = f"{n} cand{'y' if n == 1 else 'ies'}"
+    return f"It holds {candies} ({trial.capacity_ml:.0f}{_NBSP}ml), "
+
+
+def _strength(trial: Trial) -> str:
+    if trial.holds_rad is None or not trial.capacity_candies:
+        return ""
+    if trial.holds_rad == 0:
+        return "; something falls out at the slightest tilt"
+    return f"; nothing falls out up to a tilt of {degrees(trial.holds_rad):.0f} degrees"
+
+
+def _share_texts(share: float, threshold: float) -> tuple[str, str]:
+    """Return both in per cent: as few decimals as show on which side of the threshold the share lies."""
+    value, than = 100 * share, f"{100 * threshold:.4g}"
+    texts = [f"{value:.{decimals}f}" for decimals in _DECIMALS]
+    return next((text for text in texts if _side(float(text), than) == _side(value, than)), texts[-1]), than
+
+
+def _side(value: float, than: str) -> int:
+    return (value > float(than)) - (value < float(than))
+
+
+def _promised(trial: Trial) -> str:
+    """What the imagination expected of the chosen pour, in brackets."""
+    said = []
+    if trial.p_chosen is not None:
+        said.append(f"{100 * trial.p_chosen:.0f}{_NBSP}% land inside")
+    if trial.clean_at_least is not None:
+        said.append(f"at least {100 * trial.clean_at_least:.0f}{_NBSP}% of such pours spill nothing")
+    return f" (imagined: {'; '.join(said)})" if said else ""

@@ -2,30 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from core.evaluation.comparing import default_parameters, parameter_changes
 from core.evaluation.evaluation import Evaluation
 from core.evaluation.pages.cards import TROUBLES, State, cards_of, state_of
-from core.evaluation.pages.charts import histogram, roc_curve
-from core.evaluation.pages.parameter_changes import default_parameters, parameter_changes
-from core.evaluation.pages.rendering import render
-from core.evaluation.plain_text import percent
-from core.evaluation.statistics import Figures, agreement_of, sets_of, stage_times
+from core.evaluation.pages.charts import histogram, roc_curve, roc_sentence
+from core.evaluation.statistics import Figures, agreement_of, figures_of, sets_of, stage_times
 from core.evaluation.tables import (
     INTERVALS_NOTE,
     MEASURES_NOTE,
-    classification_rows,
-    figures_of,
-    paper_classification,
-    paper_pouring,
-    pouring_rows,
+    classification,
+    interval_text,
+    paper_rows,
+    percent,
+    pouring,
+    signed,
+    table_rows,
     title_of,
     truth_sentence,
+    world_rows,
 )
 from core.evaluation.trials import Trial, measure_word
+from core.resources import RESOURCES
 
-TEMPLATE = "evaluation.html.j2"
 SET_TITLES = {
     "all": "all objects",
     "restricted": "restricted",
@@ -38,10 +40,11 @@ STAGE_TITLES = {
     "scan": "scan and reconstruction",
     "collision": "collision model",
     "containability": "containability imagination",
-    "verdict": "imagined filling and tilting",
+    "judgement": "imagined filling and tilting",
+    "verdict": "imagined filling and tilting",  # as evaluations of earlier versions call it
     "pouring": "pouring imagination",
     "risk": "pours with errors of the set-up",
-    "outcome": "pours in the truth world",
+    "outcome": "pours in the ground-truth simulation",
 }
 
 
@@ -55,8 +58,9 @@ def report_page(evaluation: Evaluation, folder: Path) -> str:
     first = evaluation.variants[0]
     found = figures_of(evaluation, first)
     cards = cards_of(evaluation, first, folder)
+    rows = [*table_rows(evaluation), *paper_rows()]
     return render(
-        TEMPLATE,
+        "evaluation.html.j2",
         {
             "evaluation": evaluation,
             "title": title_text(evaluation),
@@ -68,15 +72,15 @@ def report_page(evaluation: Evaluation, folder: Path) -> str:
             "remarks": _remarks(evaluation, found),
             "duration": duration_text(evaluation.seconds),
             "mean_s": _mean_seconds(evaluation.of_variant(first)),
-            "classification": [*classification_rows(evaluation), *paper_classification()],
-            "pouring": [*pouring_rows(evaluation), *paper_pouring()],
+            "classification": classification(rows),
+            "pouring": pouring(rows),
+            "world_rows": world_rows(evaluation),
             "intervals_note": INTERVALS_NOTE,
             "measures_note": MEASURES_NOTE,
             "troubles": _troubles(evaluation),
-            "histogram": histogram(found),
-            "roc": roc_curve(found),
+            "charts": _charts(found),
             "other_charts": [
-                (title_of(variant), other, histogram(other), roc_curve(other))
+                (title_of(variant), other, _charts(other))
                 for variant, other in _other_measures(evaluation, found)
             ],
             "seeds": [(seed, found.of_seed(seed)) for seed in found.seeds],
@@ -110,6 +114,32 @@ def duration_text(seconds: float) -> str:
     return f"{minutes} min" if minutes < 120 else f"{minutes // 60} h {minutes % 60} min"
 
 
+def render(template: str, data: Mapping[str, Any]) -> str:
+    """Return the HTML of a template of `resources/evaluation`; all text in it is escaped."""
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    environment = Environment(
+        loader=FileSystemLoader([RESOURCES / "evaluation", RESOURCES / "report"]),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {
+        "percent": percent,
+        "interval": interval_text,
+        "signed": signed,
+        "word": measure_word,
+    }
+    return environment.get_template(template).render(data)
+
+
+def _charts(found: Figures) -> tuple[str, str | None, str]:
+    """The histogram, the ROC curve (none without both labels), and what the curve says at the threshold."""
+    curve = roc_curve(found)
+    return histogram(found), curve, "" if curve is None else roc_sentence(found)
+
+
 def _mean_seconds(trials: Sequence[Trial]) -> float | None:
     return sum(trial.total_s for trial in trials) / len(trials) if trials else None
 
@@ -141,10 +171,10 @@ def _other_measures(evaluation: Evaluation, found: Figures) -> list[tuple[str, F
 def _remarks(evaluation: Evaluation, found: Figures) -> list[str]:
     """What a reader must know before believing the figures."""
     remarks = []
-    asked = len(evaluation.objects) * len(evaluation.seeds) * len(evaluation.variants)
-    missing = asked - len(evaluation.trials)
+    n_all = len(evaluation.objects) * len(evaluation.seeds) * len(evaluation.variants)
+    missing = n_all - len(evaluation.trials)
     if missing:
-        remarks.append(f"{missing} of {asked} trials are not done yet: the figures tell of the others.")
+        remarks.append(f"{missing} of {n_all} trials are not done yet: the figures are of the others.")
     margin = found.margin.value
     if margin is not None and margin <= 0:
         what = measure_word(found.measure)

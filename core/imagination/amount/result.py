@@ -1,16 +1,65 @@
-"""What was reasoned of the amount: frozen, and a table for the session and the command line."""
+"""How many candies go into the cup: what is asked for, what was reasoned, and both in words."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from core.errors import SessionError
-from core.files import read_json
-from core.imagination.results import imagined_n_pour
+from core.errors import InputError, SessionError
+from core.files import read_json, write_json
 
 AMOUNT_FILE = "amount.json"
+MOST_ASKED = 99_999
+"""More candies weigh 90 kg."""
+
+
+@dataclass(frozen=True)
+class AmountRequest:
+    """How much shall be poured.
+
+    Attributes:
+        kind: "safe": as much as safely fits; "half": half full; "number": `n_candies`.
+        n_candies: the number asked for; zero with the other kinds.
+
+    Raises:
+        InputError: the number asked for is not from 1 to `MOST_ASKED`.
+    """
+
+    kind: Literal["safe", "half", "number"]
+    n_candies: int = 0
+
+    def __post_init__(self) -> None:
+        if self.kind == "number" and not 1 <= self.n_candies <= MOST_ASKED:
+            raise InputError(
+                f"{self.n_candies} candies cannot be poured; ask for a whole number from 1 to {MOST_ASKED}."
+            )
+
+    def __str__(self) -> str:
+        """Return the text from which `parse_amount` makes this request."""
+        return str(self.n_candies) if self.kind == "number" else self.kind
+
+
+SAFE, HALF = AmountRequest("safe"), AmountRequest("half")
+
+
+def parse_amount(text: str) -> AmountRequest:
+    """Return what a text asks for: "safe", "half" or a whole number of candies.
+
+    Raises:
+        InputError: it is none of these.
+    """
+    word = text.strip().lower()
+    for request in (SAFE, HALF):
+        if word == request.kind:
+            return request
+    digits = word.removeprefix("-")
+    if not (digits.isascii() and digits.isdecimal()) or len(digits) > len(str(MOST_ASKED)):
+        raise InputError(
+            f'The amount "{text}" is none that can be poured; say "safe" for as much as safely fits, "half" '
+            f"for half full, or a whole number of candies from 1 to {MOST_ASKED}."
+        )
+    return AmountRequest("number", int(word))
 
 
 @dataclass(frozen=True)
@@ -68,14 +117,63 @@ class Amount:
             ) from error
 
 
-def imagined_cups(folder: Path) -> tuple[int, ...]:
-    """Return the candies in each cup that the pours in `folder` were imagined for; empty if there are none.
+@dataclass(frozen=True)
+class PlannedAmount:
+    """What goes into the first cup.
 
-    Where it is not known what the object holds, it is one cup.
+    Attributes:
+        n_pour: N_pour of the pouring imagination: candies in the first cup, which is the fullest.
+        amount: the reasoning behind it; none if it is not known what the object holds.
     """
-    path = folder / AMOUNT_FILE
-    amount = Amount.from_table(read_json(path)) if path.is_file() else None
-    if amount is not None and amount.n_per_cup:
-        return amount.n_per_cup
-    n_pour = imagined_n_pour(folder)
-    return () if n_pour is None else (n_pour,)
+
+    n_pour: int
+    amount: Amount | None
+
+    @property
+    def n_per_cup(self) -> tuple[int, ...]:
+        """Candies in each cup; where it is not known what the object holds, it is one cup."""
+        known = None if self.amount is None else self.amount.n_per_cup
+        return known or (self.n_pour,)
+
+    def save(self, folder: Path) -> None:
+        """Write `amount.json`."""
+        table = None if self.amount is None else self.amount.to_table()
+        write_json(folder / AMOUNT_FILE, {"n_pour": self.n_pour, "amount": table})
+
+    @classmethod
+    def load(cls, folder: Path) -> PlannedAmount:
+        """Read what `save` wrote."""
+        table = read_json(folder / AMOUNT_FILE)
+        amount = table["amount"]
+        return cls(table["n_pour"], None if amount is None else Amount.from_table(amount))
+
+
+def amount_sentence(amount: Amount) -> str:
+    """Return what to put into the cup and how full the object becomes, or the refusal; without the warning.
+
+    For example: "Put 60 candies into the cup: they fill it to 40 % of its height (31 % of the 192 that fit)."
+    """
+    if amount.refusal:
+        return amount.refusal
+    if amount.n_cups == 1:
+        put = f"Put {candies(amount.n_total)} into the cup"
+    else:
+        counts = [str(n) for n in amount.n_per_cup]
+        put = f"Pour {amount.n_cups} cups of {', '.join(counts[:-1])} and {counts[-1]} candies"
+    they = "it fills" if amount.n_total == 1 else "they fill"
+    share = f"{100 * amount.share_of_capacity:.0f} % of the {amount.n_fit} that fit"
+    if amount.fill_share <= 0:
+        return f"{put}: {share}."
+    if amount.fill_share >= 1:
+        return f"{put}: {they} it to its rim ({share})."
+    return f"{put}: {they} it to {100 * amount.fill_share:.0f} % of its height ({share})."
+
+
+def amount_text(amount: Amount) -> str:
+    """Return the sentence of an amount with its warning, or its refusal."""
+    return f"{amount_sentence(amount)} {amount.warning}".strip()
+
+
+def candies(n: int) -> str:
+    """Return a number of candies in words."""
+    return "1 candy" if n == 1 else f"{n} candies"

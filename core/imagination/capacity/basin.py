@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.geometry import FloatArray
-from core.imagination.capacity.packing import Surroundings
+from core.imagination.capacity.stand_in import Surroundings
 
 ML = 1e6
 """Millilitres in a cubic metre."""

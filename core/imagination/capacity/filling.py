@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import ceil, sqrt
 
 import numpy as np
 
 from core.geometry import BoolArray, FloatArray, invert_pose, transform_points
 from core.imagination.bullet_world import BulletWorld
 from core.imagination.capacity.basin import Basin
-from core.imagination.capacity.rain import Rain, runs_over
 from core.imagination.capacity.stand_in import StandIn
-from core.imagination.containability import ObjectAtRest, inside_aabb
+from core.imagination.object_at_rest import ObjectAtRest, inside_aabb
+from core.imagination.particle_shape import particle_extents_m, shape_of
 from core.imagination.perturbation import Perturbation, move_object
 from core.imagination.recording import Recorder, Recording
 from core.parameters import Parameters
-from core.parameters.capacity import CapacityParameters
 from core.workers import Task, report_fraction
 
 FILLING_WEIGHT = 20.0
@@ -29,7 +29,6 @@ _MOST_SHARE, _MOST_MORE = 2.0, 40
 _STREAM = 7
 """Of random numbers, apart from those of the drop and the pours."""
 _SETTLE_S = 0.4
-_RESTING_M_S = 0.05
 _REPORT_STEPS = 25
 
 
@@ -76,24 +75,19 @@ class FillPlan:
     only_level: bool = False
 
 
-def filling_task(
-    target: ObjectAtRest, plan: FillPlan, filling: int, parameters: Parameters, settings: CapacityParameters
-) -> Task:
+def filling_task(target: ObjectAtRest, plan: FillPlan, filling: int, parameters: Parameters) -> Task:
     """Return the task whose result is the `Filling` numbered `filling`; each has another rain."""
-    return Task(_fill, (target, plan, filling, parameters, settings), FILLING_WEIGHT)
+    return Task(_fill, (target, plan, filling, parameters), FILLING_WEIGHT)
 
 
-def _fill(
-    target: ObjectAtRest, plan: FillPlan, filling: int, parameters: Parameters, settings: CapacityParameters
-) -> Filling:
+def _fill(target: ObjectAtRest, plan: FillPlan, filling: int, parameters: Parameters) -> Filling:
     generator = np.random.default_rng([parameters.seed, _STREAM, filling])
     perturbation = Perturbation(parameters.containability, target.center_of_mass_m)
     reach_m = perturbation.reach_m(target.aabb_m)
     with BulletWorld(plan.stand_in.solver, plan.stand_in.particle, plan.stand_in.contact, reach_m) as world:
         played = _Play(world, target, perturbation, plan, parameters)
-        rain = Rain(
-            world, float(target.aabb_m[1, 2]), plan.stand_in, plan.places_m, generator, settings.rain_m_s
-        )
+        speed_m_s = parameters.capacity.rain_m_s
+        rain = Rain(world, float(target.aabb_m[1, 2]), plan.stand_in, plan.places_m, generator, speed_m_s)
         played.rain(rain)
         played.settle()
         n_full = played.n_inside()
@@ -129,7 +123,7 @@ def _level(positions_m: FloatArray, aabb_m: FloatArray, plan: FillPlan) -> Float
 def _below(positions_m: FloatArray, tops_m: FloatArray, aabb_m: FloatArray, plan: FillPlan) -> FloatArray:
     heights_m = tops_m - positions_m[:, 2]
     heights_m[np.isnan(heights_m)] = -np.inf  # taken out
-    if plan.stand_in.particle.shape == "sphere":
+    if shape_of(plan.stand_in.particle).fills_as_ball:
         high = (heights_m / plan.stand_in.particle.diameter_m + 0.5).clip(0, 1)
         share = high**2 * (3 - 2 * high)  # of a ball below a plane
     else:
@@ -155,7 +149,7 @@ class _Play:
         self._plan, self._rate_hz = plan, plan.stand_in.solver.rate_hz
         self._rest_s = settings.drop_s  # the perturbation's own clock starts with a drop
         self._record_steps = max(round(parameters.evidence.record_interval_s * self._rate_hz), 1)
-        self._body_id = world.add_driven_body(target.body, settings.contact.restitution)
+        self._body_id = world.add_driven_body(target.body)
         self._step = 0
         self._frames: list[tuple[float, FloatArray, FloatArray]] = []
         self._last_m = np.empty(0)
@@ -173,7 +167,7 @@ class _Play:
                 is_slow = poured >= _FAST_SHARE * n_expected
                 if is_slow:
                     seen.append((poured, self.n_inside()))
-                    if poured >= most or runs_over(seen, window):
+                    if poured >= most or overflows(seen, window):
                         return
                 rain.handful()
                 next_step = self._step + (rain.slow_steps if is_slow else rain.fast_steps)
@@ -187,7 +181,7 @@ class _Play:
         """Wait until nothing rolls any more."""
         for step in range(round(_SETTLE_S * self._rate_hz)):
             self._advance(0.0)
-            if step % 10 == 0 and self._world.top_speed_m_s() < _RESTING_M_S:
+            if step % 10 == 0 and self._world.is_at_rest():
                 return
 
     def perturb(self) -> None:
@@ -229,3 +223,87 @@ class _Play:
         self._last_m = np.concatenate([self._last_m, new])
         inside = inside_aabb(in_object, self._target.aabb_m)
         self._last_m[inside] = in_object[inside, 2]
+
+
+_APART = 1.05
+"""Distance of neighbours in a handful, in diameters."""
+_MOST_TRIED = 300
+"""Places tried for one handful; finely spaced ones differ little."""
+_FOLLOWS = 1.3
+"""Distance of two handfuls when they rain fast, in heights of a candy."""
+_SLOW_S = 0.1
+"""Time between two handfuls when they rain slowly; it grows with the root of the candies' size."""
+_RUNS_OVER = 0.4
+"""It runs over when less than this share of the last candies adds up."""
+
+
+class Rain:
+    """Lets handfuls go above the footprint, no two particles touching."""
+
+    def __init__(
+        self,
+        world: BulletWorld,
+        top_m: float,
+        stand_in: StandIn,
+        places_m: FloatArray,
+        generator: np.random.Generator,
+        speed_m_s: float,
+    ) -> None:
+        extents_m = particle_extents_m(stand_in.particle)
+        self._world, self._places_m, self._generator = world, places_m, generator
+        self._apart_m = _APART * float(extents_m[0])
+        self._height_m = top_m + float(extents_m[0])
+        self._velocity = np.array([0.0, 0.0, -speed_m_s, 0.0, 0.0, 0.0])
+        rate_hz = stand_in.solver.rate_hz
+        self.fast_steps = ceil(_FOLLOWS * float(extents_m[2]) / speed_m_s * rate_hz)
+        self.slow_steps = max(self.fast_steps, ceil(_SLOW_S * sqrt(stand_in.scale) * rate_hz))
+
+    def handful(self) -> None:
+        """Let go one layer."""
+        chosen = np.empty((0, 2))
+        for place in self._places_m[self._generator.permutation(len(self._places_m))[:_MOST_TRIED]]:
+            if (np.hypot(*(chosen - place).T) >= self._apart_m).all():
+                chosen = np.vstack([chosen, place])
+        for x, y in chosen.tolist():
+            self._world.add_particle(np.array([x, y, self._height_m, 0, 0, 0, 1]), self._velocity)
+
+
+def overflows(seen: list[tuple[int, float]], window: float) -> bool:
+    """Whether the last `window` candies hardly added up, given how many rained and how many were inside."""
+    poured, inside = seen[-1]
+    before = [entry for entry in seen if entry[0] <= poured - window]
+    return bool(before) and inside - before[-1][1] < _RUNS_OVER * (poured - before[-1][0])
+
+
+_LEAST = 4
+"""Fewer clear places than this, and the widest are taken whether they are clear or not."""
+
+
+def rain_places(basin: Basin, footprint_m: FloatArray, radius_m: float, apart_m: float) -> FloatArray:
+    """Return (n, 2) places above a hollow and near the footprint, where a particle falls clear of the rim.
+
+    What falls onto the rim bounces off and would look as if the object had run over. Without a hollow it
+    rains on the footprint as it is.
+
+    Args:
+        basin: what the object holds by geometry.
+        footprint_m: (m, 2) places from which candies stayed.
+        radius_m: of what rains.
+        apart_m: distance of neighbours in the drop's grid.
+    """
+    from scipy.ndimage import distance_transform_edt
+    from scipy.spatial import cKDTree
+
+    is_hollow = np.isfinite(basin.rim_map_m)
+    cells = np.argwhere(is_hollow)
+    if not len(cells):
+        return footprint_m
+    places = basin.map_origin_m + basin.map_pitch_m * cells
+    away_m, _ = cKDTree(footprint_m).query(places)
+    near: BoolArray = np.asarray(away_m) <= apart_m
+    if not near.any():
+        return footprint_m
+    places, room_m = places[near], basin.map_pitch_m * distance_transform_edt(is_hollow)[is_hollow][near]
+    enough_m = min(radius_m, float(np.sort(room_m)[-min(_LEAST, len(room_m))]))
+    clear: FloatArray = places[room_m >= enough_m]
+    return clear

@@ -2,30 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from statistics import fmean, pstdev
 
 import numpy as np
 
+from core.collision import CollisionModel
 from core.imagination.capacity.basin import ML, Basin
-from core.imagination.capacity.explain import Facts, explain
-from core.imagination.capacity.filling import Filling, FillPlan, filling_task
-from core.imagination.capacity.packing import bulk_ml
-from core.imagination.capacity.places import rain_places
+from core.imagination.capacity.filling import Filling, FillPlan, filling_task, rain_places
 from core.imagination.capacity.result import Capacity
 from core.imagination.capacity.stand_in import (
     ball_diameter_m,
     ball_of,
+    bulk_ml,
     candy_itself,
-    particle_volume_m3,
 )
-from core.imagination.containability import ObjectAtRest
-from core.imagination.results import Containability
+from core.imagination.context import ImaginationContext
+from core.imagination.particle_shape import particle_volume_m3
+from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
-from core.parameters.capacity import CapacityParameters
-from core.progress import Reporter
-from core.workers import Task, TaskRunner
+from core.workers import Task
 
 STAGE = "capacity"
 _SMALLEST_CANDIES = 1.0
@@ -37,44 +34,29 @@ _PLUGGED = 1.1
 """Gaps matter when the hollow is by so much larger for what is as thick as the balls."""
 
 
-def imagine_capacity(
-    surface: TriangleMesh,
-    target: ObjectAtRest,
-    found: Containability,
-    parameters: Parameters,
-    settings: CapacityParameters,
-    runner: TaskRunner,
-    reporter: Reporter,
-) -> Capacity:
+def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Capacity:
     """Fill an object in imagination, and find its geometric volume.
 
     Args:
-        surface: of the object, in the frame of `target`.
-        target: its body, as the drop had it.
-        found: its containability: candies rain where those that stayed had been dropped.
-        parameters: of the imagination.
-        settings: of the filling.
-        runner: where to compute.
-        reporter: receives the progress.
+        context: its parameters say how it is filled.
+        model: the object's body.
+        drop: on the same object: candies rain where those that stayed had been dropped.
     """
-    task = _basin_task(surface, parameters.particle.diameter_m, parameters, settings)
-    basin: Basin = runner.run([task], STAGE, reporter)[0]
-    plan = _plan(basin, found, parameters, settings)
-    if not found.retained.any():
+    parameters, surface, target = context.parameters, model.surface, context.target(model)
+    basin: Basin = context.run([_basin_task(surface, parameters.particle.diameter_m, parameters)], STAGE)[0]
+    plan = _plan(basin, drop, parameters)
+    if not drop.retained.any():
         return _result(plan, basin, (), surface, parameters)
     if plan.stand_in.scale > 1:
-        task = _basin_task(surface, plan.stand_in.particle.diameter_m, parameters, settings)
-        plan = _without_plugs(plan, basin, runner.run([task], STAGE, reporter)[0])
-    tasks = [filling_task(target, plan, k, parameters, settings) for k in range(settings.n_fillings)]
-    fillings: list[Filling] = runner.run(tasks, STAGE, reporter)
-    return _result(plan, basin, tuple(fillings), surface, parameters)
+        task = _basin_task(surface, plan.stand_in.particle.diameter_m, parameters)
+        plan = _without_plugs(plan, basin, context.run([task], STAGE)[0])
+    tasks = [filling_task(target, plan, k, parameters) for k in range(parameters.capacity.n_fillings)]
+    return _result(plan, basin, tuple(context.run(tasks, STAGE)), surface, parameters)
 
 
-def _basin_task(
-    surface: TriangleMesh, thickness_m: float, parameters: Parameters, settings: CapacityParameters
-) -> Task:
+def _basin_task(surface: TriangleMesh, thickness_m: float, parameters: Parameters) -> Task:
     smallest_ml = _SMALLEST_CANDIES * _usual_bulk_ml(parameters)
-    return Task(_find_basin, (surface, thickness_m, smallest_ml, settings.lattice_points), 1.0)
+    return Task(_find_basin, (surface, thickness_m, smallest_ml, parameters.capacity.lattice_points), 1.0)
 
 
 def _find_basin(surface: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
@@ -83,9 +65,8 @@ def _find_basin(surface: TriangleMesh, thickness_m: float, smallest_ml: float, p
     return find_basin(surface, thickness_m, smallest_ml, points)
 
 
-def _plan(
-    basin: Basin, found: Containability, parameters: Parameters, settings: CapacityParameters
-) -> FillPlan:
+def _plan(basin: Basin, found: Drop, parameters: Parameters) -> FillPlan:
+    settings = parameters.capacity
     # What the drop left inside fits, whatever the geometry says of gaps.
     n_candies = max(basin.candies_ml / _usual_bulk_ml(parameters), float(found.n_in))
     stand_in = candy_itself(parameters)
@@ -145,6 +126,7 @@ def _result(
         volumes_ml=basin.volumes_ml,
         candies_per_ml=1 / per_candy,
         recording=fillings[0].recording if fillings else None,
+        stand_in_diameter_m=plan.stand_in.particle.diameter_m if plan.stand_in.scale > 1 else None,
     )
 
 
@@ -172,3 +154,93 @@ def _facts(
         mouth_m=basin.mouth_m,
         candy_m=parameters.particle.diameter_m,
     )
+
+
+AGREE_SHARE = 0.15
+"""Volumes that differ by less need no explanation."""
+_COUNTS = 0.25
+"""A reason is named when it accounts for at least this share of the difference."""
+_NARROW_MOUTH = 2.0
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What is known of a filling, volumes in ml, lengths in m.
+
+    Attributes:
+        imagined_ml: bulk volume of the candies that stay.
+        heaped_ml: bulk volume of the candies above the rim.
+        water_ml: geometric volume.
+        hollow_ml: geometric volume for what is as thick as a candy.
+        narrow_ml: water where no candy goes.
+        shaken_off_ml: bulk volume of what the perturbations took from below the rim.
+        left_below: share of the candies lost that left lower than the rim.
+        water_level_m: above the object's lowest point, where water runs out of the largest hollow; NaN.
+        rim_m: the same for candies; NaN.
+        mouth_m: width of the mouth.
+        candy_m: diameter of a candy.
+    """
+
+    imagined_ml: float
+    heaped_ml: float
+    water_ml: float
+    hollow_ml: float
+    narrow_ml: float
+    shaken_off_ml: float
+    left_below: float
+    water_level_m: float
+    rim_m: float
+    mouth_m: float
+    candy_m: float
+
+
+def explain(facts: Facts) -> str:
+    """Return sentences on the difference; empty when the volumes agree and hardly anything is heaped."""
+    heap = ""
+    if facts.heaped_ml > AGREE_SHARE * max(facts.imagined_ml, facts.water_ml):
+        where = "where nothing is closed all around" if np.isnan(facts.rim_m) else "above the rim"
+        heap = f"Candies for {facts.heaped_ml:.0f} ml lie heaped {where}."
+    return " ".join(sentence for sentence in (_difference(facts), heap) if sentence)
+
+
+def _difference(facts: Facts) -> str:
+    more = facts.imagined_ml - facts.water_ml
+    if abs(more) <= AGREE_SHARE * max(facts.imagined_ml, facts.water_ml):
+        return ""
+    reasons = _of_more(facts, more) if more > 0 else _of_less(facts, -more)
+    said = f"The candies stand for {facts.imagined_ml:.0f} ml, water would be {facts.water_ml:.0f} ml: "
+    return said + ("; ".join(reasons) or "neither gaps nor the shaking account for it") + "."
+
+
+def _of_more(facts: Facts, more: float) -> list[str]:
+    reasons = []
+    if facts.hollow_ml - facts.water_ml >= _COUNTS * more:
+        reasons.append(_gap(facts))
+    return reasons
+
+
+def _gap(facts: Facts) -> str:
+    closed = f"where candies are held up to {1000 * facts.rim_m:.0f} mm"
+    if np.isnan(facts.water_level_m):
+        return f"water runs out at the bottom through a gap that candies do not pass, {closed}"
+    height = f"{1000 * facts.water_level_m:.0f} mm above the foot"
+    return f"water runs out {height} through a gap that candies do not pass, {closed}"
+
+
+def _of_less(facts: Facts, less: float) -> list[str]:
+    if facts.imagined_ml == 0:
+        return [
+            "none of the candies that stay lies where water would"
+            if facts.heaped_ml > 0
+            else "no candy stays"
+        ]
+    reasons = []
+    if facts.narrow_ml >= _COUNTS * less:
+        reasons.append(f"{facts.narrow_ml:.0f} ml of water stand in hollows too narrow for a candy")
+    if facts.shaken_off_ml >= _COUNTS * less:
+        reasons.append(f"tilting and pushing take off candies for {facts.shaken_off_ml:.0f} ml")
+    if facts.left_below >= _COUNTS:
+        reasons.append(f"{100 * facts.left_below:.0f} % of the candies lost left lower than the rim")
+    if 0 < facts.mouth_m < _NARROW_MOUTH * facts.candy_m:
+        reasons.append(f"the mouth is {1000 * facts.mouth_m:.0f} mm wide, less than two candies")
+    return reasons

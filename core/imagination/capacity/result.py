@@ -29,6 +29,7 @@ class Capacity:
         geometric_volume_ml: water that stays in all hollows of the surface: none runs over or out of a gap.
         candy_hollow_ml: the same for what is as thick as a candy and cannot pass narrower gaps.
         candy_scale: cube root of the volume of what was poured in the imagination over a candy's; 1: candies.
+        stand_in_diameter_m: of the balls poured in place of candies; none where candies were poured.
         n_poured: particles poured in each filling, of `candy_scale`.
         n_full: of these inside before the perturbations.
         n_kept: of these inside at the end.
@@ -58,6 +59,7 @@ class Capacity:
     volumes_ml: FloatArray
     candies_per_ml: float
     recording: Recording | None
+    stand_in_diameter_m: float | None = None
 
     @property
     def n_level(self) -> float:
@@ -68,6 +70,15 @@ class Capacity:
     def bulk_ml(self) -> float:
         """Bulk volume of all that stay, the heap included."""
         return self.volume_ml + self.heaped_ml
+
+    @property
+    def remark(self) -> str:
+        """What to know about the figures: what was poured if it was not candies, and `explanation`."""
+        poured = ""
+        if self.stand_in_diameter_m is not None:
+            diameter_mm, n_candies = 1000 * self.stand_in_diameter_m, self.candy_scale**3
+            poured = f"Filled with balls of {diameter_mm:.0f} mm, each in place of {n_candies:.0f} candies."
+        return " ".join(filter(None, (poured, self.explanation)))
 
     def level_of(self, n_candies: float) -> float:
         """Return the height above the inner floor (m) that a number of candies reaches; never above the rim.

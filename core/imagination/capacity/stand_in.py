@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import pi, sqrt
 
+from core.imagination.particle_shape import particle_volume_m3, shape_of
 from core.parameters import Parameters
-from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
+from core.parameters.bodies import ContactParameters, ParticleParameters, SolverParameters
 
 _BALL_SUBSTEPS = 2
 """A ball is seen by a wall until its centre is through it, which is long after a hull is lost."""
@@ -28,14 +29,6 @@ class StandIn:
     particle: ParticleParameters
     contact: ContactParameters
     solver: SolverParameters
-
-
-def particle_volume_m3(particle: ParticleParameters) -> float:
-    """Volume of one particle."""
-    if particle.shape == "sphere":
-        return pi / 6 * particle.diameter_m**3
-    flat = particle.diameter_m**2 * particle.height_m
-    return pi / 4 * flat if particle.shape == "cylinder" else pi / 6 * flat
 
 
 def ball_diameter_m(particle: ParticleParameters) -> float:
@@ -76,3 +69,44 @@ def ball_of(parameters: Parameters, scale: float) -> StandIn:
         }
     )
     return StandIn(scale, ball, slowed, solver)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Share far from everything, and what floor and walls take away, by size times area over volume."""
+
+    free: float
+    floor: float
+    side: float
+
+
+BALLS = Fit(0.582, 0.049, 0.0)
+CANDIES = Fit(0.600, 0.080, 0.020)
+_MOST_FLOOR, _MOST_SIDE = 0.9, 1.4
+"""Beyond what was measured the last counts: there nothing is bulk any more."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a bulk of candies lies against: its volume, and the areas of floor and walls that it touches."""
+
+    volume_m3: float
+    floor_m2: float
+    side_m2: float
+
+
+NOWHERE = Surroundings(1.0, 0.0, 0.0)
+"""Far from everything."""
+
+
+def packing_fraction(particle: ParticleParameters, around: Surroundings) -> float:
+    """Return the share of a volume that particles fill in bulk."""
+    fit = BALLS if shape_of(particle).fills_as_ball else CANDIES
+    per_volume = ball_diameter_m(particle) / around.volume_m3
+    floor = min(per_volume * around.floor_m2, _MOST_FLOOR)
+    return fit.free - fit.floor * floor - fit.side * min(per_volume * around.side_m2, _MOST_SIDE)
+
+
+def bulk_ml(particle: ParticleParameters, around: Surroundings) -> float:
+    """Return what a particle takes up in bulk, in ml."""
+    return particle_volume_m3(particle) * 1e6 / packing_fraction(particle, around)

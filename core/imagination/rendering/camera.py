@@ -12,6 +12,8 @@ from core.geometry import FloatArray
 _FIELD_OF_VIEW_RAD = radians(30)
 _AZIMUTH_RAD = radians(28)
 _LOWEST_RAD, _HIGHEST_RAD = radians(40), radians(60)
+_MARGIN = 0.04
+"""Share of the picture that is left free on every side."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class Camera:
         return degrees(_FIELD_OF_VIEW_RAD)
 
     def blended(self, other: Camera, share: float) -> Camera:
-        """Return the camera on the way to `other` (same direction), there at `share` 1."""
+        """Return the camera moved towards `other` (same direction) by a `share` of the distance."""
         eye = (1 - share) * self.eye_m + share * other.eye_m
         return Camera(eye, self.forward, self.aspect, max(self.reach_m, other.reach_m))
 
@@ -53,15 +55,15 @@ def view_direction(extents_m: FloatArray) -> FloatArray:
     return -np.array(to_camera)
 
 
-def frame(points_m: FloatArray, forward: FloatArray, aspect: float, margin: float = 0.04) -> Camera:
+def frame(points_m: FloatArray, forward: FloatArray, aspect: float) -> Camera:
     """Return the nearest camera looking along `forward` that sees all of `points_m` (n, 3).
 
-    `margin` is the share of the picture kept free on every side.
+    A margin is left free on every side.
     """
     right = np.cross(forward, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
     up = np.cross(right, forward)
-    tangent_up = tan(_FIELD_OF_VIEW_RAD / 2) * (1 - 2 * margin)
+    tangent_up = tan(_FIELD_OF_VIEW_RAD / 2) * (1 - 2 * _MARGIN)
     depth = points_m @ forward
     along_right, back_right = _between(points_m @ right, depth, tangent_up * aspect)
     along_up, back_up = _between(points_m @ up, depth, tangent_up)

@@ -1,4 +1,7 @@
-"""Which renderer this machine has, found out where a broken graphics driver does no harm."""
+"""Which renderer this machine has, found out in a process of its own, which a broken graphics driver may end.
+
+Run as a program with a folder for temporary files, it takes a picture and prints the renderer's name last.
+"""
 
 from __future__ import annotations
 
@@ -6,23 +9,27 @@ import re
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
-from core.imagination.rendering.scene import EGL, TINY
+import numpy as np
+
+from core.imagination.rendering.camera import aabb_corners, frame
+from core.imagination.rendering.scene import EGL, TINY, Scene
 
 _LONGEST_S = 30.0
 _DEVICE = re.compile(rb"GL_RENDERER=(.+)")
 
 
 def renderer_name() -> str:
-    """Say what draws the pictures here, such as `EGL, llvmpipe (LLVM 15.0.6, 256 bits)` or `TinyRenderer`.
+    """Return what draws the pictures here, such as `EGL, llvmpipe (LLVM 15.0.6, 256 bits)` or `TinyRenderer`.
 
-    Asked in a process of its own, which may crash or hang.
+    The process that finds it out may crash or hang.
     """
     try:
         # The folder is made here, because the other process may not live to remove it.
         with tempfile.TemporaryDirectory(prefix="poursight-") as folder:
             probe = subprocess.run(
-                [sys.executable, "-m", "core.imagination.rendering.probe", folder],
+                [sys.executable, "-m", "core.imagination.rendering.doctor", folder],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 timeout=_LONGEST_S,
@@ -34,3 +41,17 @@ def renderer_name() -> str:
         return TINY
     device = _DEVICE.search(probe.stdout)
     return f"{EGL}, {device[1].decode(errors='replace').strip()}" if device else EGL
+
+
+def main(folder: Path) -> None:
+    """Take a picture and print what drew it; with a broken driver the process ends here."""
+    aabb_m = np.array([[0.0, 0.0, 0.0], [0.1, 0.1, 0.1]])
+    with Scene(folder, aabb_m, with_egl=True) as scene:
+        scene.add_ground(0.0)
+        scene.photograph(frame(aabb_corners(*aabb_m), scene.forward, 1.0), 64, 64)
+        renderer = scene.renderer
+    print("\n" + renderer, flush=True)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

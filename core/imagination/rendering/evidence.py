@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.errors import SessionError
-from core.files import read_json, write_json
+from core.errors import Remedy, SessionError
+from core.files import read_json, write_json, write_whole
 
 _INDEX = "evidence.json"
 
@@ -40,15 +40,11 @@ class Evidence:
         try:
             files = {name: (folder / name).read_bytes() for name in table["files"]}
         except OSError as error:
-            raise SessionError(
-                f"{error.filename} cannot be read; run the stage that writes it again."
-            ) from error
+            raise SessionError(f"{error.filename} cannot be read.", Remedy.RUN_AGAIN) from error
         return cls(files, table["renderer"])
 
 
 def show_early(folder: Path | None, name: str, content: bytes) -> None:
-    """Put a picture where somebody waits for it before the others are done, whole or not at all."""
+    """Put a picture, whole or not at all, where somebody is waiting for it before the others are done."""
     if folder is not None:
-        unfinished = folder / f".{name}.part"
-        unfinished.write_bytes(content)
-        unfinished.replace(folder / name)
+        write_whole(folder / name, content)

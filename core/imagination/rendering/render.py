@@ -6,20 +6,17 @@ import tempfile
 from pathlib import Path
 
 from core.errors import WorkerError
+from core.imagination.rendering.drop_view import render_drop_stills
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.films import render_drop_film, render_pour_film
-from core.imagination.rendering.sheet import render_pour_sheet
-from core.imagination.rendering.stills import render_drop_stills
+from core.imagination.rendering.pour_view import render_pour_sheet
 from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.progress import Reporter
-from core.workers import Task, WorkerPool
+from core.workers import Task, TaskRunner
 
 STAGE = "evidence"
-PICTURE_PX = (640, 480)
-WORKER_MODULE = "core.imagination.rendering.render"
-"""What workers import before their first task."""
 
 
 def render_evidence(
@@ -29,14 +26,14 @@ def render_evidence(
     containability: Containability,
     grid: PourGrid | None,
     choice: PourChoice | None,
-    pool: WorkerPool,
+    runner: TaskRunner,
     reporter: Reporter,
     early: Path | None = None,
 ) -> Evidence:
     """Render what `parameters.evidence` asks for, with EGL or, where that fails, with TinyRenderer.
 
     `surface` is the object at rest in the frame of the recordings, `cup` the cup in its own frame. The folder
-    `early` takes each still as soon as it is drawn, for somebody who watches; it is the caller's to clear.
+    `early` takes each still as soon as it is drawn, for somebody who is watching; the caller clears it.
 
     Raises:
         Cancelled: the reporter was asked to stop.
@@ -46,7 +43,7 @@ def render_evidence(
 
     def render(folder: Path, with_egl: bool) -> Evidence:
         tasks = _tasks(folder, surface, cup, parameters, containability, grid, choice, with_egl, early)
-        parts: list[Evidence] = pool.run(tasks, STAGE, reporter)
+        parts: list[Evidence] = runner.run(tasks, STAGE, reporter)
         files = {name: content for part in parts for name, content in part.files.items()}
         return Evidence(files, parts[0].renderer if parts else "")
 
@@ -56,7 +53,9 @@ def render_evidence(
             return render(Path(folder), with_egl=True)
         except WorkerError:
             # Bullet's EGL plugin ends the process when the graphics driver is broken.
-            reporter.warn("Drawing with the graphics driver (EGL) failed; it is done without, more slowly.")
+            reporter.warn(
+                "Drawing with the graphics driver (EGL) failed; drawing continues without it, more slowly."
+            )
             return render(Path(folder), with_egl=False)
 
 
@@ -76,14 +75,14 @@ def _tasks(
     The stills, which take least, come second: somebody may be waiting for them.
     """
     aabb_m, wanted = containability.aabb_m, parameters.evidence
-    drop = (folder, surface, containability, parameters, PICTURE_PX, with_egl)
+    drop = (folder, surface, containability, parameters, with_egl)
     tasks = []
     if wanted.films:
         tasks.append(Task(render_drop_film, drop, 8.0))
     if wanted.renders:
         tasks.append(Task(render_drop_stills, (*drop, early), 1.0))
     if wanted.films and grid is not None and choice is not None:
-        pour = (folder, surface, aabb_m, cup, grid, choice, parameters, PICTURE_PX, with_egl)
+        pour = (folder, surface, aabb_m, cup, grid, choice, parameters, with_egl)
         tasks.append(Task(render_pour_film, pour, 4.0))
     if wanted.renders and grid is not None:
         sheet = (folder, surface, aabb_m, cup, grid, choice, parameters, with_egl)

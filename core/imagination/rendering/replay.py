@@ -29,7 +29,7 @@ class Replay:
 
 
 def make_replay(recording: Recording, retained: BoolArray, ground_m: float, candy_height_m: float) -> Replay:
-    """Prepare a recording; the imagination has no ground, so a lost candy is laid where it passes ours."""
+    """Prepare a recording; the imagination has no ground, so a lost candy is placed where it passes ours."""
     positions, quaternions = recording.positions_m.copy(), recording.quaternions.copy()
     resting_m = ground_m + candy_height_m / 2
     for candy in np.flatnonzero(~retained):
@@ -45,11 +45,9 @@ def poured_in(recording: Recording, aabb_m: FloatArray, counted: str) -> BoolArr
     """Return (N,) which candies count at the end, by the rule `counted` of the pouring parameters."""
     final = recording.positions_m[-1]
     with np.errstate(invalid="ignore"):
-        if counted == "inside":
-            inside: BoolArray = ((final > aabb_m[0]) & (final < aabb_m[1])).all(axis=1)
-            return inside
-        above: BoolArray = final[:, 2] >= aabb_m[0, 2]
-        return above
+        inside: BoolArray = ((final > aabb_m[0]) & (final < aabb_m[1])).all(axis=1)
+        above_floor: BoolArray = final[:, 2] >= aabb_m[0, 2]
+    return {"inside": inside, "above_floor": above_floor}[counted]
 
 
 def lowest_point_m(surface: TriangleMesh, T_world_body: Float32Array) -> float:

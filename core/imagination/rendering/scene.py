@@ -1,4 +1,4 @@
-"""A scene that is only looked at: visual shapes in one Bullet server, nothing collides, nothing is stepped.
+"""A scene for pictures only: visual shapes in one Bullet server, nothing collides, nothing is stepped.
 
 EGL clients in one process share their state, and a picture taken from a second thread crashes (bullet3 issues
 3318, 4477): use one scene at a time, in a worker's main thread.
@@ -21,7 +21,7 @@ from core.imagination.rendering.camera import Camera, light_direction, view_dire
 from core.imagination.rendering.shapes import candy_mesh, write_ground_obj, write_obj
 from core.imagination.rotations import quaternion_of
 from core.mesh import TriangleMesh
-from core.parameters.imagination import ParticleParameters
+from core.parameters.bodies import ParticleParameters
 from core.quiet import quiet
 
 EGL, TINY = "EGL", "TinyRenderer"
@@ -58,7 +58,7 @@ class Scene:
         `folder` takes the files Bullet reads; they are removed when the scene closes.
 
         Raises:
-            StageError: Bullet gave no server.
+            StageError: Bullet started no server.
         """
         extents_m = aabb_m[1] - aabb_m[0]
         self.forward = view_direction(extents_m)
@@ -69,7 +69,9 @@ class Scene:
         self._cup: int | None = None
         self._client = bullet.connect(bullet.DIRECT)
         if self._client < 0:
-            raise StageError("Bullet gave no server for the pictures; close other simulations and try again.")
+            raise StageError(
+                "Bullet started no server for the pictures; close other simulations and try again."
+            )
         self._n_files = 0
         self._is_warm = False
         self._files = tempfile.TemporaryDirectory(dir=folder)
@@ -212,7 +214,7 @@ class Scene:
 
 
 def load_egl(client: int) -> bool:
-    """Load Bullet's EGL plugin into a client and tell whether it is there.
+    """Load Bullet's EGL plugin into a client and return whether it is there.
 
     With a broken graphics driver this may end the process: call it in a worker.
     """

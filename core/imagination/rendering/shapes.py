@@ -8,22 +8,19 @@ import numpy as np
 
 from core.geometry import AnyArray, FloatArray
 from core.imagination.cup import inner_radius_m
+from core.imagination.particle_shape import particle_extents_m, shape_of
 from core.mesh import TriangleMesh
-from core.parameters.imagination import CupParameters, ParticleParameters
+from core.parameters.bodies import CupParameters, ParticleParameters
 
 _CREASE_COSINE = 0.85
 _FEW = 0.01
 _STAND_OFF = 0.003
 _CANDY_SIDES = 12
 _CUP_SIDES = 64
-_BEVEL = 0.15
-# A candy's outline as (radius, height) in half diameters and half heights, from the top to the bottom.
-_CYLINDER_OUTLINE = ((1 - _BEVEL, 1.0), (1.0, 1 - 2 * _BEVEL), (1.0, 2 * _BEVEL - 1), (1 - _BEVEL, -1.0))
-_ROUND_OUTLINE = tuple((float(np.sin(a)), float(np.cos(a))) for a in np.pi * np.arange(1, 6) / 6)
 
 
 def write_obj(path: Path, mesh: TriangleMesh, scale: float) -> None:
-    """Write a mesh, enlarged by `scale`, with normals that are smooth but for creases.
+    """Write a mesh, enlarged by `scale`, with normals that are smooth except at creases.
 
     Renderers draw the outside of a face only; of a mesh whose faces disagree about it both sides are written.
     """
@@ -42,12 +39,14 @@ def write_obj(path: Path, mesh: TriangleMesh, scale: float) -> None:
 
 
 def candy_mesh(particle: ParticleParameters) -> TriangleMesh:
-    """Surface of a candy about its centre, flat in z; few faces, because hundreds are drawn."""
-    outline = _CYLINDER_OUTLINE if particle.shape == "cylinder" else _ROUND_OUTLINE
-    height_m = particle.diameter_m if particle.shape == "sphere" else particle.height_m
-    half_extents_m = np.array([particle.diameter_m, particle.diameter_m, height_m]) / 2
+    """Surface of a candy about its centre, flat in z; few faces, because hundreds are drawn.
+
+    Raises:
+        StageError: nobody knows its shape.
+    """
+    outline = shape_of(particle).outline
     unit = _revolved([(0.0, 1.0), *outline, (0.0, -1.0)], _CANDY_SIDES)
-    return TriangleMesh(unit.vertices_m * half_extents_m, unit.faces)
+    return TriangleMesh(unit.vertices_m * particle_extents_m(particle) / 2, unit.faces)
 
 
 def cup_surface(cup: CupParameters) -> TriangleMesh:
@@ -78,7 +77,7 @@ def write_ground_obj(
 
 
 def _faces_outwards(mesh: TriangleMesh) -> bool:
-    """Whether the faces enclose a volume and turn their outside outwards, but for a few."""
+    """Whether the faces enclose a volume and turn their outside outwards, except for a few."""
     n = np.int64(len(mesh.vertices_m))
     starts, ends = mesh.faces.ravel(), np.roll(mesh.faces, -1, axis=1).ravel()
     is_open = ~np.isin(starts * n + ends, ends * n + starts)

@@ -1,8 +1,8 @@
-"""Where hand and cup are in each part of a pour: poses of the tool frame along a way (Sec. III-B, Eq. 6).
+"""Where hand and cup are in each segment of a pour: poses of the tool frame (Sec. III-B, Eq. 6).
 
-The cup is round, so it may sit in the hand at any angle psi about its axis: psi tells where on its rim, seen
-from the hand, the pivot is. While the cup is upright, one azimuth tells how the hand stands: that of the tool
-frame's x-axis in the base frame.
+The cup is round, so it may sit in the hand at any angle psi about its axis: psi is where on its rim, seen
+from the hand, the pivot is. While the cup is upright, one azimuth gives the hand's orientation: that of the
+tool frame's x-axis in the base frame.
 """
 
 from __future__ import annotations
@@ -12,13 +12,15 @@ from math import pi
 import numpy as np
 
 from core.geometry import FloatArray, make_pose, rotation_z
-from core.imagination.cup import cup_pose, inner_radius_m, pivot_in_cup_m
-from core.motion.cone import Cone
-from core.parameters.imagination import CupParameters
+from core.imagination.cup import cup_pose, inner_radius_m, pivot_in_cup_m, pour_angle
+from core.motion.distances import Cone
+from core.motion.pour.plan import PourTarget
+from core.parameters.bodies import CupParameters
+from core.parameters.imagination import PouringParameters
 
 
 def outer_cone(cup: CupParameters) -> Cone:
-    """The cup's outside, closed, in the cup's frame; as the imagination has it."""
+    """The cup's outside, closed, in the cup's frame; the same as in the imagination."""
     return Cone(float(inner_radius_m(cup, 0.0)) + cup.wall_m, cup.mouth_radius_m, cup.length_m)
 
 
@@ -28,9 +30,9 @@ def grasp_of_cup(psi_rad: float, grip_height_m: float) -> FloatArray:
 
 
 def hand_angle_rad(T_flange_grasp: FloatArray) -> float:
-    """The angle about the cup's axis, in the tool frame, towards which the hand points.
+    """The angle about the cup's axis, in the tool frame, in which the hand points.
 
-    With the pivot there, the hand is opposite to it: above the cup that lies ready to pour.
+    With the pivot there, the hand is opposite to it: above the cup that is tilted ready to pour.
     """
     flange_z = T_flange_grasp[2, :3]
     return float(np.arctan2(flange_z[1], flange_z[0]))
@@ -42,7 +44,7 @@ def upright_rad(cup: CupParameters) -> float:
 
 
 def upright_azimuth_rad(theta_rad: float, psi_rad: float) -> float:
-    """The hand's azimuth when the cup of a pour has been turned upright about the pour's axis."""
+    """The hand's azimuth when the cup of a pour has been rotated upright about the pour's axis."""
     return theta_rad + pi - psi_rad
 
 
@@ -55,12 +57,12 @@ def upright_grasps(positions_m: FloatArray, azimuths_rad: FloatArray) -> FloatAr
     return poses
 
 
-def turned_cups(
+def rotated_cups(
     cup: CupParameters, pivot_m: FloatArray, theta_rad: float, gamma_rad: FloatArray
 ) -> FloatArray:
-    """`T_base_cup` (N, 4, 4) turned by gamma (N,) about the pour's axis, the pivot where it shall be.
+    """`T_base_cup` (N, 4, 4) rotated by gamma (N,) about the pour's axis, with the pivot in its place.
 
-    The same poses as `cup_pose` gives one by one.
+    The same poses as those of `cup_pose`, which returns one at a time.
     """
     ready = cup_pose(cup, np.zeros(3), theta_rad, 0.0)[:3, :3]
     axis = rotation_z(theta_rad)[:, 1]
@@ -74,18 +76,49 @@ def turned_cups(
     return poses
 
 
-def laying_grasps(
+def tilted_grasps(
     cup: CupParameters, theta_rad: float, gamma_rad: FloatArray, psi_rad: FloatArray, positions_m: FloatArray
 ) -> FloatArray:
-    """`T_base_grasp` (N, 4, 4) at positions (N, 3), the cup tilted as by gamma (N,) in the direction of a
-    pour.
+    """`T_base_grasp` (N, 4, 4) at positions (N, 3), the cup tilted by gamma (N,) in the direction of a pour.
 
-    The hand may go round the cup's axis meanwhile, psi (N,): cup and candies do not mind, they lie still.
+    The hand may rotate about the cup's axis meanwhile, psi (N,), which leaves cup and candies as they are.
     """
-    poses = turned_cups(cup, np.zeros(3), theta_rad, gamma_rad)
+    poses = rotated_cups(cup, np.zeros(3), theta_rad, gamma_rad)
     c, s = np.cos(psi_rad), np.sin(psi_rad)
     back = np.zeros((len(psi_rad), 3, 3))
     back[:, 0, 0], back[:, 0, 1], back[:, 1, 0], back[:, 1, 1], back[:, 2, 2] = c, s, -s, c, 1
     poses[:, :3, :3] = poses[:, :3, :3] @ back
     poses[:, :3, 3] = positions_m
     return poses
+
+
+def tilting_grasps(
+    target: PourTarget,
+    psi_rad: float,
+    upright_m: FloatArray,
+    spin_rad: float,
+    ready_m: FloatArray,
+    shares: FloatArray,
+) -> FloatArray:
+    """`T_base_grasp` (N, 4, 4) at shares (N,) of the path from upright to tilted ready to pour."""
+    left = 1 - shares
+    cup = target.pouring.cup
+    positions = ready_m + left[:, None] * (upright_m - ready_m)
+    return tilted_grasps(cup, target.theta_rad, upright_rad(cup) * left, psi_rad + spin_rad * left, positions)
+
+
+def pouring_grasps(
+    target: PourTarget, grip_height_m: float, psi_rad: float, gamma_rad: FloatArray
+) -> FloatArray:
+    """`T_base_grasp` (N, 4, 4) that hold the cup at pour angles (N,), with the pivot in its place."""
+    cups = rotated_cups(target.pouring.cup, target.pivot_m, target.theta_rad, gamma_rad)
+    positions = cups[:, :3, 3] + grip_height_m * cups[:, :3, 2]
+    psi = np.full(len(gamma_rad), psi_rad)
+    return tilted_grasps(target.pouring.cup, target.theta_rad, gamma_rad, psi, positions)
+
+
+def imagined_rate(pouring: PouringParameters, gamma_rad: FloatArray) -> FloatArray:
+    """Rates (N,) of the imagined rotation at pour angles (N,), in rad/s; zero at its end."""
+    _, at_first = pour_angle(pouring, pouring.settle_s + 1e-12)
+    share = np.clip(gamma_rad / pouring.gamma_0_rad, 0, 1)
+    return np.asarray(at_first * np.sqrt(1 - share**2))

@@ -1,4 +1,4 @@
-"""The plan of a pour, and whether a pour can be planned: frozen, and able to save and load themselves."""
+"""The pour to plan, and its plan: frozen, and able to save and load itself."""
 
 from __future__ import annotations
 
@@ -15,8 +15,47 @@ from core.errors import SessionError
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import AnyArray, FloatArray
 from core.motion.trajectory import JointTrajectory
+from core.parameters.imagination import PouringParameters
 
 PLAN_FILE, TRAJECTORIES_FILE = "plan.json", "plan.npz"
+
+
+class Segment(str, Enum):
+    """A segment of a pour's motion, from rest to rest; the values are those of the files of sessions."""
+
+    TO_CUP = "to the cup"
+    GRASP = "grasp"
+    LIFT = "lift"
+    CARRY = "carry"
+    TILT = "lay"
+    LOWER = "lower"
+    POUR = "pour"
+    ROTATE_BACK = "turn back"
+    RAISE = "raise"
+    TILT_BACK = "stand up"
+    CARRY_BACK = "carry back"
+    PUT_DOWN = "put down"
+    RETREAT = "retreat"
+    HOME = "home"
+    LET_GO = "let go of the cup"
+    REJOIN = "back on the way"
+
+    def __str__(self) -> str:
+        """The value, so that it reads the same in a file, a table and a sentence on every Python."""
+        return self.value
+
+    @property
+    def label(self) -> str:
+        """As shown to the user."""
+        return _LABELS.get(self, self.value)
+
+
+_LABELS = {
+    Segment.TILT: "tilt",
+    Segment.ROTATE_BACK: "rotate back",
+    Segment.TILT_BACK: "tilt upright",
+    Segment.REJOIN: "return to the path",
+}
 
 
 class MovePhase(str, Enum):
@@ -29,25 +68,25 @@ class MovePhase(str, Enum):
 
 
 GripperAction = Literal["close", "open"]
-MoveFacts = tuple[str, MovePhase, bool, GripperAction | None]
+MoveFacts = tuple[Segment, MovePhase, bool, GripperAction | None]
 
 MOVES: tuple[MoveFacts, ...] = (
-    ("to the cup", MovePhase.APPROACH, False, None),
-    ("grasp", MovePhase.APPROACH, False, "close"),
-    ("lift", MovePhase.CARRY, True, None),
-    ("carry", MovePhase.CARRY, True, None),
-    ("lay", MovePhase.CARRY, True, None),
-    ("lower", MovePhase.CARRY, True, None),
-    ("pour", MovePhase.POUR, True, None),
-    ("turn back", MovePhase.BACK, True, None),
-    ("raise", MovePhase.BACK, True, None),
-    ("stand up", MovePhase.BACK, True, None),
-    ("carry back", MovePhase.BACK, True, None),
-    ("put down", MovePhase.BACK, True, "open"),
-    ("retreat", MovePhase.BACK, False, None),
-    ("home", MovePhase.BACK, False, None),
+    (Segment.TO_CUP, MovePhase.APPROACH, False, None),
+    (Segment.GRASP, MovePhase.APPROACH, False, "close"),
+    (Segment.LIFT, MovePhase.CARRY, True, None),
+    (Segment.CARRY, MovePhase.CARRY, True, None),
+    (Segment.TILT, MovePhase.CARRY, True, None),
+    (Segment.LOWER, MovePhase.CARRY, True, None),
+    (Segment.POUR, MovePhase.POUR, True, None),
+    (Segment.ROTATE_BACK, MovePhase.BACK, True, None),
+    (Segment.RAISE, MovePhase.BACK, True, None),
+    (Segment.TILT_BACK, MovePhase.BACK, True, None),
+    (Segment.CARRY_BACK, MovePhase.BACK, True, None),
+    (Segment.PUT_DOWN, MovePhase.BACK, True, "open"),
+    (Segment.RETREAT, MovePhase.BACK, False, None),
+    (Segment.HOME, MovePhase.BACK, False, None),
 )
-"""Name, phase, whether the hand holds the cup, and what the gripper does afterwards, in their order."""
+"""Segment, phase, whether the hand holds the cup, and what the gripper does afterwards, in order."""
 
 
 @dataclass(frozen=True)
@@ -55,18 +94,48 @@ class PlannedMove:
     """One move of a plan, from rest to rest.
 
     Attributes:
-        name: for people.
+        name: its segment of the motion.
         phase: what it is for.
-        trajectory: where the joints are at which time, every 8 ms.
+        trajectory: the joints' positions, every 8 ms.
         holds_cup: whether the cup is in the hand.
         gripper_after: what the gripper does when the arm has come to rest.
     """
 
-    name: str
+    name: Segment
     phase: MovePhase
     trajectory: JointTrajectory
     holds_cup: bool
     gripper_after: GripperAction | None
+
+    @property
+    def label(self) -> str:
+        """As shown to the user."""
+        return self.name.label
+
+
+@dataclass(frozen=True)
+class PourTarget:
+    """The pour to plan: what was imagined, and chosen.
+
+    Attributes:
+        object_aabb_m: (2, 3) lower and upper corner of the object in the base frame.
+        i: index of the direction.
+        j: index of the distance.
+        theta_rad: direction of the ray from p_E to the pivot, against the base frame's x-axis.
+        pivot_m: (3,) r_pivot in the base frame.
+        pouring: what was imagined with: the cup and its pour rotation.
+        digest: of the imagination it belongs to; empty if only its feasibility is judged.
+        note: why it is this one, if a person chose it; logged with the run.
+    """
+
+    object_aabb_m: FloatArray
+    i: int
+    j: int
+    theta_rad: float
+    pivot_m: FloatArray
+    pouring: PouringParameters
+    digest: str = ""
+    note: str = ""
 
 
 @dataclass(frozen=True)
@@ -76,15 +145,15 @@ class PourPlan:
     Attributes:
         i: index of the pour's direction.
         j: index of its distance.
-        moves: in their order, each beginning where the one before ends.
-        T_grasp_cup: (4, 4) how the cup sits in the hand; its x-axis points to the pivot.
+        moves: in their order, each starting where the previous one ends.
+        T_grasp_cup: (4, 4) pose of the cup in the hand; its x-axis points to the pivot.
         clearance_m: smallest distance of arm and tools to anything.
-        nearest: names of the two that are this near.
+        nearest: names of the two that are this close.
         cup_clearance_m: smallest distance of the held cup to anything but what it stands on.
-        pivot_error_m: how far the pivot wanders during the turn.
+        pivot_error_m: largest displacement of the pivot during the pour rotation.
         singularity: smallest `singularity_measure` while the cup is in the hand.
-        imagined_turn_s: time of the imagined turn.
-        turn_s: time the arm takes for it.
+        imagined_turn_s: duration of the imagined pour rotation.
+        turn_s: duration of the arm's.
     """
 
     i: int
@@ -106,12 +175,12 @@ class PourPlan:
 
     @property
     def start_rad(self) -> FloatArray:
-        """(6,) where the arm must stand to begin."""
+        """(6,) where the arm must be at the start."""
         return self.moves[0].trajectory.start_rad
 
     @property
     def digest(self) -> str:
-        """SHA-256 over everything the plan says, in hexadecimal digits."""
+        """SHA-256 of the whole plan, in hexadecimal digits."""
         sha = hashlib.sha256(json.dumps(self._table(), sort_keys=True).encode())
         for name, array in sorted(self._arrays().items()):
             sha.update(f"{name} {array.shape}".encode())
@@ -128,13 +197,15 @@ class PourPlan:
         """Read what `save` wrote.
 
         Raises:
-            SessionError: a file is missing, damaged, or not the one that was written with the other.
+            SessionError: a file is missing or damaged, or the two do not belong together.
         """
         table, arrays = read_json(folder / PLAN_FILE), read_arrays(folder / TRAJECTORIES_FILE)
         try:
             plan = cls._from(table, arrays)
         except (KeyError, TypeError, ValueError) as error:
-            raise SessionError(f"{folder / PLAN_FILE} is no plan ({error}); plan the pour again.") from error
+            raise SessionError(
+                f"{folder / PLAN_FILE} is not a valid plan ({error}); plan the pour again."
+            ) from error
         if plan.digest != table.get("digest"):
             raise SessionError(f"The plan in {folder} was changed after it was written; plan the pour again.")
         return plan
@@ -143,7 +214,7 @@ class PourPlan:
     def _from(cls, table: dict[str, Any], arrays: dict[str, AnyArray]) -> PourPlan:
         moves = tuple(
             PlannedMove(
-                move["name"],
+                Segment(move["name"]),
                 MovePhase(move["phase"]),
                 JointTrajectory(arrays[f"times_s_{k}"], arrays[f"joints_rad_{k}"]),
                 move["holds_cup"],
@@ -158,7 +229,7 @@ class PourPlan:
     def _table(self) -> dict[str, Any]:
         moves = [
             {
-                "name": move.name,
+                "name": move.name.value,
                 "phase": move.phase.value,
                 "duration_s": move.trajectory.duration_s,
                 "holds_cup": move.holds_cup,
@@ -187,26 +258,3 @@ _FIGURES = (
     "imagined_turn_s",
     "turn_s",
 )
-
-
-@dataclass(frozen=True)
-class PourFeasibility:
-    """Whether the arm can make a pour.
-
-    Attributes:
-        i: index of the pour's direction.
-        j: index of its distance.
-        is_feasible: whether there is a plan that passes every check.
-        reason: why not, in a sentence; empty where there is a plan.
-        clearance_m: the plan's smallest distance of arm and tools to anything; 0 without a plan.
-        turn_s: the time its turn takes; 0 without a plan.
-        duration_s: of all its moves; 0 without a plan.
-    """
-
-    i: int
-    j: int
-    is_feasible: bool
-    reason: str
-    clearance_m: float
-    turn_s: float
-    duration_s: float

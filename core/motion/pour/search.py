@@ -1,50 +1,107 @@
-"""The search for a pour's motion: how the cup sits in the hand, where it is laid, how it gets there."""
+"""The search for a pour's motion: how the cup sits in the hand, where it is tilted, how it gets there."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 
 import numpy as np
 
-from core.geometry import FloatArray, IntArray
-from core.motion.pour.carrying import Carry, Carrying
-from core.motion.pour.geometry import laying_grasps, upright_azimuth_rad, upright_rad
-from core.motion.pour.lattice import METRE_COST_RAD, Lattice, clear_ways, find_lattice, safe_height_m, why_not
-from core.motion.pour.scene import PourScene
+from core.geometry import BoolArray, FloatArray, IntArray
+from core.motion.kinematics import inverse_kinematics, singularity_measure
+from core.motion.pour.carrying import (
+    METRE_COST_RAD,
+    Carry,
+    Carrying,
+    Lattice,
+    clear_paths,
+    find_lattice,
+    safe_height_m,
+    why_not,
+)
+from core.motion.pour.geometry import hand_angle_rad, pouring_grasps, tilting_grasps, upright_azimuth_rad
+from core.motion.pour.plan import PourTarget, Segment
+from core.motion.pour.scene import PourScene, too_close
 from core.motion.pour.station import Grip
-from core.motion.pour.turns import CARRY, LAY, NOWHERE, PourTask, Reasons, Turn, find_turns, turn_grasps
-from core.parameters.imagination import PouringParameters
 
-_LAY_SHARES = np.linspace(0, 1, 8)
-"""Places on the way of laying the cup that are looked at first."""
-_LAYS = 24, 120
-"""Upright places tried for laying the cup: the first few, and this many if none of them will do."""
+_N_PSI = 24
+_STEP_RAD = 2 * np.pi / _N_PSI
+_N_GAMMAS = 6
+_TILT_SHARES = np.linspace(0, 1, 8)
+"""Shares of the tilting path that are checked first."""
+_CANDIDATES = 24, 120
+"""Upright placements tried for tilting the cup: the first few, and this many if none of them will do."""
 _LOWER_M = 0.03
-"""The cup is laid at least this far above where the pour begins."""
-_LAY_COST_RAD = 8.0
-"""Upright places that are farther off than this are not tried."""
+"""The cup is tilted at least this far above where the pour starts."""
+_TILT_COST_RAD = 8.0
+"""Upright placements that are farther off than this are not tried."""
 _CARRY_SHARE = 0.3
-"""What a longer way to there counts against a longer way of laying, where the cup tilts."""
+"""Weight of a longer path to a placement against a longer tilting path from it."""
+
+
+class Stage(IntEnum):
+    """How far an attempt came: the stage at which it failed."""
+
+    START = 0
+    REACH = 1
+    SINGULARITY = 2
+    HAND = 3
+    CUP = 4
+    PLACEMENT = 5
+    TILT = 6
+    CARRY = 7
+    CHECK = 8
+
+
+@dataclass
+class Reasons:
+    """Why there is no plan: the sentence of the attempt that came farthest.
+
+    Attributes:
+        stage: how far it came.
+        sentence: why it came no farther.
+    """
+
+    stage: Stage = Stage.START
+    sentence: str = ""
+
+    def add(self, stage: Stage, sentence: str) -> None:
+        """Keep a sentence if no other attempt came this far."""
+        if stage > self.stage:
+            self.stage, self.sentence = stage, sentence
 
 
 @dataclass(frozen=True)
-class Way:
-    """Everything that defines a pour's motion but its times.
+class PourGrasp:
+    """One way to hold the cup in the pour.
 
     Attributes:
-        task: the pour.
-        turn: how the cup is held.
-        grip: how it is taken.
-        carry: stretches to where it is laid.
-        upright_m: (3,) the tool frame's origin there.
-        spin_rad: how far the hand goes round the cup's axis while it lays the cup.
-        ready_m: (3,) the tool frame's origin above the beginning of the pour.
-        initial_m: (3,) and at its beginning.
+        psi_rad: how the cup sits in the hand.
+        branch: of the inverse kinematics.
     """
 
-    task: PourTask
-    turn: Turn
+    psi_rad: float
+    branch: int
+
+
+@dataclass(frozen=True)
+class PourPath:
+    """Everything that defines a pour's motion except its times.
+
+    Attributes:
+        target: the pour.
+        grasp: how the cup is held.
+        grip: how it is taken.
+        carry: stretches to where it is tilted.
+        upright_m: (3,) the tool frame's origin there.
+        spin_rad: rotation of the hand about the cup's axis during tilting.
+        ready_m: (3,) the tool frame's origin above the start of the pour.
+        initial_m: (3,) and at its start.
+    """
+
+    target: PourTarget
+    grasp: PourGrasp
     grip: Grip
     carry: Carry
     upright_m: FloatArray
@@ -53,89 +110,138 @@ class Way:
     initial_m: FloatArray
 
 
-class WaySearch:
-    """Finds ways for the pours onto one object; what several pours ask is answered once."""
+class PathSearch:
+    """Finds paths for the pours onto one object; what several pours need is computed once."""
 
-    def __init__(self, scene: PourScene, pouring: PouringParameters, grips: Sequence[Grip]) -> None:
+    def __init__(self, scene: PourScene, grips: Sequence[Grip]) -> None:
         """Search with these ways to take the cup."""
         self.scene = scene
-        self.pouring = pouring
         self._grips = grips
-        self._lattices: dict[int, Lattice] = {}
-        self._carryings: dict[int, list[Carrying]] = {}
+        self._branches = sorted({grip.branch for grip in grips})
+        self._carried: dict[int, tuple[Lattice, list[Carrying]]] = {}
 
-    def ways(self, task: PourTask, reasons: Reasons) -> Iterator[Way]:
-        """Yield ways that are clear at some places along them, the best first."""
-        branches = sorted({grip.branch for grip in self._grips})
-        for turn in find_turns(self.scene, self.pouring, task, branches, reasons):
-            yield from self._ways_to(task, turn, reasons)
+    def paths(self, target: PourTarget, reasons: Reasons) -> Iterator[PourPath]:
+        """Yield paths that are clear at some points along them, the best first."""
+        for grasp in _find_grasps(self.scene, target, self._branches, reasons):
+            yield from self._paths_to(target, grasp, reasons)
 
-    def _ways_to(self, task: PourTask, turn: Turn, reasons: Reasons) -> Iterator[Way]:
-        initial = turn_grasps(self.scene, self.pouring.cup, task, turn.psi_rad, np.zeros(1))[0, :3, 3]
+    def _paths_to(self, target: PourTarget, grasp: PourGrasp, reasons: Reasons) -> Iterator[PourPath]:
+        grip_height = self.scene.cell.grip_height_m
+        initial = pouring_grasps(target, grip_height, grasp.psi_rad, np.zeros(1))[0, :3, 3]
         ready = initial.copy()
         ready[2] = max(ready[2] + _LOWER_M, safe_height_m(self.scene))
-        lattice, carryings = self._carried(turn.branch)
-        spins = upright_azimuth_rad(task.theta_rad, turn.psi_rad) - lattice.azimuths_rad
+        lattice, carryings = self._carried_on(grasp.branch)
+        spins = upright_azimuth_rad(target.theta_rad, grasp.psi_rad) - lattice.azimuths_rad
         spins = (spins + np.pi) % (2 * np.pi) - np.pi
-        for k in self._layable(task, turn, spins, ready, reasons):
+        for k in self._placements(target, grasp, spins, ready, reasons):
             for carrying in carryings:
                 carry = carrying.to(k) if np.isfinite(carrying.cost_rad[k]) else None
                 if carry is None:
-                    reasons.add(CARRY, "The arm found no clear way to carry the upright cup to this pour.")
+                    reasons.add(
+                        Stage.CARRY, "No clear path was found on which to carry the upright cup to this pour."
+                    )
                     continue
-                place, spin = lattice.positions_m[k], float(spins[k])
-                yield Way(task, turn, carrying.grip, carry, place, spin, ready, initial)
+                upright, spin = lattice.positions_m[k], float(spins[k])
+                yield PourPath(target, grasp, carrying.grip, carry, upright, spin, ready, initial)
 
-    def _layable(
-        self, task: PourTask, turn: Turn, spins_rad: FloatArray, ready_m: FloatArray, reasons: Reasons
+    def _placements(
+        self,
+        target: PourTarget,
+        grasp: PourGrasp,
+        spins_rad: FloatArray,
+        ready_m: FloatArray,
+        reasons: Reasons,
     ) -> Iterator[int]:
-        """Upright places from which the cup can be laid above a pour: those of the first batch with any."""
-        lattice, carryings = self._carried(turn.branch)
+        """Upright placements from which the cup can be tilted above a pour: of the first batch with any."""
+        lattice, carryings = self._carried_on(grasp.branch)
         positions = lattice.positions_m
         cost = np.abs(spins_rad) + METRE_COST_RAD * np.linalg.norm(positions - ready_m, axis=1)
-        too_far = cost > _LAY_COST_RAD
+        too_far = cost > _TILT_COST_RAD
         cost += _CARRY_SHARE * np.min([carrying.cost_rad for carrying in carryings], axis=0)
         cost[too_far] = np.inf
-        nearest: IntArray = np.argsort(cost, kind="stable")[: _LAYS[1]]
+        nearest: IntArray = np.argsort(cost, kind="stable")[: _CANDIDATES[1]]
         nearest = nearest[np.isfinite(cost[nearest])]
         if not len(nearest):
             reasons.add(
-                NOWHERE, "The arm found no clear way to bring the upright cup anywhere near this pour."
+                Stage.PLACEMENT, "No clear path was found that brings the upright cup near this pour."
             )
             return
-        for batch in (nearest[: _LAYS[0]], nearest[_LAYS[0] :]):
-            ways = [
-                lay_grasps(self.pouring, task, turn, positions[k], spins_rad[k], ready_m, _LAY_SHARES)
+        for batch in (nearest[: _CANDIDATES[0]], nearest[_CANDIDATES[0] :]):
+            paths = [
+                tilting_grasps(target, grasp.psi_rad, positions[k], spins_rad[k], ready_m, _TILT_SHARES)
                 for k in batch
             ]
-            clear = clear_ways(self.scene, turn.branch, np.array(ways).reshape(-1, len(_LAY_SHARES), 4, 4))
+            clear = clear_paths(
+                self.scene, grasp.branch, np.array(paths).reshape(-1, len(_TILT_SHARES), 4, 4)
+            )
             if clear.any():
                 yield from batch[clear].tolist()
                 return
-            if reasons.stage < LAY:
-                reasons.add(LAY, why_not(self.scene, turn.branch, ways[0], "lay"))
+            if reasons.stage < Stage.TILT:
+                reasons.add(Stage.TILT, why_not(self.scene, grasp.branch, paths[0], Segment.TILT))
 
-    def _carried(self, branch: int) -> tuple[Lattice, list[Carrying]]:
-        """Where a branch may hold the cup upright, and the ways to there from each of its grips."""
-        if branch not in self._lattices:
+    def _carried_on(self, branch: int) -> tuple[Lattice, list[Carrying]]:
+        """Where a branch may hold the cup upright, and the paths there from each of its grips."""
+        if branch not in self._carried:
             lattice = find_lattice(self.scene, branch)
             own = [grip for grip in self._grips if grip.branch == branch]
-            self._lattices[branch] = lattice
-            self._carryings[branch] = [Carrying(self.scene, grip, lattice) for grip in own]
-        return self._lattices[branch], self._carryings[branch]
+            self._carried[branch] = lattice, [Carrying(self.scene, grip, lattice) for grip in own]
+        return self._carried[branch]
 
 
-def lay_grasps(
-    pouring: PouringParameters,
-    task: PourTask,
-    turn: Turn,
-    upright_m: FloatArray,
-    spin_rad: float,
-    ready_m: FloatArray,
-    shares: FloatArray,
-) -> FloatArray:
-    """`T_base_grasp` (N, 4, 4) at shares (N,) of the way from upright to lying ready."""
-    left = 1 - shares
-    gammas = upright_rad(pouring.cup) * left
-    positions = ready_m + left[:, None] * (upright_m - ready_m)
-    return laying_grasps(pouring.cup, task.theta_rad, gammas, turn.psi_rad + spin_rad * left, positions)
+def _find_grasps(
+    scene: PourScene, target: PourTarget, branches: Sequence[int], reasons: Reasons
+) -> list[PourGrasp]:
+    """Return how the cup may be held, checked at a few angles of the pour rotation.
+
+    The hand opposite to the pivot, above the tilted cup, comes first; then more and more to the side.
+    """
+    gammas = np.linspace(0, target.pouring.gamma_0_rad, _N_GAMMAS)
+    offsets = _STEP_RAD * np.array([(k + 1) // 2 * (1 if k % 2 else -1) for k in range(_N_PSI)])
+    psis = hand_angle_rad(scene.cell.T_flange_grasp) + offsets
+    height = scene.cell.grip_height_m
+    poses = np.concatenate([pouring_grasps(target, height, float(psi), gammas) for psi in psis])
+    result = inverse_kinematics(scene.cell.arm, scene.flange_poses(poses), branches)
+    shape = _N_PSI, _N_GAMMAS, len(branches)
+    reached = (result.found & ~result.undetermined).reshape(shape).all(axis=1)
+    if not reached.any():
+        reasons.add(Stage.REACH, "The arm cannot reach this pour, whichever side of the cup its hand is on.")
+        return []
+    joints = result.joints_rad.reshape(*shape, 6).transpose(0, 2, 1, 3)[reached]
+    clear = _are_clear(scene, joints, reasons)
+    return [PourGrasp(float(psis[k]), branches[b]) for k, b in np.argwhere(reached)[clear]]
+
+
+def _are_clear(scene: PourScene, joints: FloatArray, reasons: Reasons) -> BoolArray:
+    """Which pour rotations (C, K, 6) are clear and not singular."""
+    limits, shape = scene.cell.limits, joints.shape[:2]
+    regular: BoolArray = singularity_measure(scene.cell.arm, joints).min(axis=1) >= limits.min_singularity
+    if not regular.any():
+        sentence = "In the move 'pour' the arm would come too close to a singular configuration."
+        reasons.add(Stage.SINGULARITY, sentence)
+        return regular
+    hand = scene.hand.clearance(joints.reshape(-1, 6))
+    distances = np.where(regular[:, None], hand.distance_m.reshape(shape), -np.inf)
+    clear: BoolArray = distances.min(axis=1) >= limits.min_clearance_m
+    if not clear.any():
+        worst = _worst_of_best(distances)
+        distance = float(hand.distance_m[worst])
+        reasons.add(
+            Stage.HAND, too_close(Segment.POUR, hand.nearest(worst), distance, limits.min_clearance_m)
+        )
+        return clear
+    held = joints[clear].reshape(-1, 6)
+    cup = scene.cup_clearance(scene.held_cups(held), held)
+    distances = cup.distance_m.reshape(-1, shape[1])
+    clear[clear] = distances.min(axis=1) >= limits.cup_clearance_m
+    if not clear.any():
+        worst = _worst_of_best(distances)
+        distance = float(cup.distance_m[worst])
+        reasons.add(Stage.CUP, too_close(Segment.POUR, cup.nearest(worst), distance, limits.cup_clearance_m))
+    return clear
+
+
+def _worst_of_best(distances_m: FloatArray) -> int:
+    """Flat index of the smallest distance in the row of (C, K) whose smallest is largest."""
+    best = int(distances_m.min(axis=1).argmax())
+    return int(best * distances_m.shape[1] + distances_m[best].argmin())

@@ -1,8 +1,7 @@
-"""The driver's end of the worker process: it starts it, asks it, watches it, and ends it."""
+"""The driver's end of the worker process, and a motion as the driver's caller sees it."""
 
 from __future__ import annotations
 
-import multiprocessing
 import time
 from collections.abc import Callable
 from contextlib import suppress
@@ -13,10 +12,64 @@ from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
 from typing import Any
 
+from core.child_process import STDERR, STDOUT, ChildProcess
 from core.geometry import AnyArray
 from hardware.errors import RobotError, RobotLost, RobotUnreachable
-from hardware.robots.ur.mailbox import StateMailbox
-from hardware.robots.ur.messages import Connected, Ended, Reply, Request, Setup, Started
+from hardware.robots.ur.messages import Connected, Ended, Reply, Request, Setup, Started, StateMailbox
+
+
+class UrMove:
+    """A motion under way; made by `UR5Robot`, which reports to it how it ended."""
+
+    def __init__(self, name: str, progress: Callable[[], float], stop: Callable[[], None]) -> None:
+        """Belong to a robot of this name."""
+        self._name = name
+        self._ask_progress, self._stop = progress, stop
+        self._progress = 0.0
+        self._error: RobotError | None = None
+        self._is_over = Event()
+        self._lock = Lock()
+
+    @property
+    def is_done(self) -> bool:
+        """Whether it has ended, at its target or not."""
+        return self._is_over.is_set()
+
+    @property
+    def progress(self) -> float:
+        """Share of the path that is done, 0 to 1."""
+        reported = 0.0 if self._is_over.is_set() else min(self._ask_progress(), 1.0)
+        with self._lock:  # it may have ended meanwhile, and what was reported before must not stay
+            if not self._is_over.is_set():
+                self._progress = max(self._progress, reported)
+            return self._progress
+
+    def wait(self, timeout_s: float) -> None:
+        """Wait until the target is reached.
+
+        Raises:
+            RobotStopped: the motion ended elsewhere; its kind and sentence say why.
+            RobotError: it did not end in time, or the robot is lost.
+        """
+        if not self._is_over.wait(timeout_s):
+            raise RobotError(f"The {self._name} did not arrive within {timeout_s:g} s; stop it.")
+        if self._error is not None:
+            raise self._error
+
+    def stop(self) -> None:
+        """Stop where the arm is now."""
+        if not self._is_over.is_set():
+            self._stop()
+
+    def end(self, error: RobotError | None, progress: float = 0.0) -> None:
+        """Record that it is over, and after which share of the path; only the first report counts."""
+        with self._lock:
+            if self._is_over.is_set():
+                return
+            self._error = error
+            self._progress = 1.0 if error is None else max(self._progress, progress)
+            self._is_over.set()
+
 
 START_S = 30.0
 """A process starts in half a second, and in ten on a machine with too much to do."""
@@ -29,12 +82,12 @@ _ANSWER_S = 2.0
 _END_S = 1.0
 
 
-def _work(setup: Setup, connection: Connection, mailbox: StateMailbox) -> None:
+def _work(connection: Connection, setup: Setup, mailbox: StateMailbox) -> None:
     """In the new process."""
     # Late, so that the parent never loads ur_rtde.
     from hardware.robots.ur.worker import serve
 
-    serve(setup, connection, mailbox)
+    serve(connection, setup, mailbox)
 
 
 class WorkerLink:
@@ -56,24 +109,22 @@ class WorkerLink:
         Raises:
             RobotError: it could not connect.
         """
-        context = multiprocessing.get_context("spawn")
         self._address = setup.address
         self._on_ended, self._on_lost = on_ended, on_lost
-        self._mailbox = StateMailbox(context)
-        self._connection, theirs = context.Pipe()
-        self._process = context.Process(
-            target=_work, args=(setup, theirs, self._mailbox), name="ur worker", daemon=True
-        )
+        self._mailbox = StateMailbox()
         self._numbers = count()
         self._replies: dict[int, SimpleQueue[RobotError | None]] = {}
         self._send_lock = Lock()
         self._is_ending = Event()
-        self._process.start()
-        theirs.close()
+        # ur_rtde prints its progress to both outputs; a worker without a parent must not go on driving.
+        self._process = ChildProcess(
+            _work, setup, self._mailbox, name="ur worker", silenced=(STDOUT, STDERR), grace_s=0.0
+        )
+        self._connection = self._process.connection
         try:
             self._wait_until_connected()
         except BaseException:
-            self._kill()
+            self._process.end()
             raise
         self._thread = Thread(target=self._supervise, name="ur supervision", daemon=True)
         self._thread.start()
@@ -81,7 +132,6 @@ class WorkerLink:
     @property
     def process_id(self) -> int:
         """Of the worker."""
-        assert self._process.pid is not None, "it was started"
         return self._process.pid
 
     def state(self) -> AnyArray:
@@ -92,7 +142,7 @@ class WorkerLink:
         """
         raw = self._fresh_state()
         if raw is None:
-            # Where the whole machine stood still, the worker gets to run again, too, and tells the newest.
+            # Where the whole machine stood still, the worker gets to run again, too, and sends the newest.
             self._is_ending.wait(_LOOK_S)
             raw = self._fresh_state()
         if raw is None:
@@ -122,9 +172,8 @@ class WorkerLink:
         self._is_ending.set()
         with suppress(OSError, ValueError, TimeoutError):
             self._send(Request(next(self._numbers), "end", ()), _END_S)
-            self._process.join(_END_S)
+        self._process.end(_END_S)
         self._thread.join()
-        self._kill()
 
     def _fresh_state(self) -> AnyArray | None:
         raw = self._mailbox.read()
@@ -155,7 +204,7 @@ class WorkerLink:
         """One of the worker's first two messages."""
         if not self._connection.poll(within_s):
             raise RobotUnreachable(
-                f"The controller at {self._address} answers on its ports but says nothing more; restart it, "
+                f"The controller at {self._address} answers on its ports but sends nothing more; restart it, "
                 "then try again."
             )
         try:
@@ -168,7 +217,7 @@ class WorkerLink:
         return message
 
     def _supervise(self) -> None:
-        """Hand on what the worker says until it ends; a frozen or dead one is ended and told of."""
+        """Pass on what the worker sends until it ends; a frozen or dead one is ended and reported."""
         while not self._is_ending.is_set():
             try:
                 wait_for_handles([self._connection, self._process.sentinel], _LOOK_S)
@@ -183,7 +232,7 @@ class WorkerLink:
             if self._is_ending.is_set():
                 return
             self._is_ending.set()
-            self._kill()
+            self._process.end()
             for reply in list(self._replies.values()):
                 reply.put(lost)
             self._on_lost(lost)
@@ -193,11 +242,6 @@ class WorkerLink:
             self._on_ended(message)
         elif message.number in self._replies:
             self._replies[message.number].put(message.error)
-
-    def _kill(self) -> None:
-        self._process.kill()
-        self._process.join()
-        self._connection.close()
 
     def _lost(self, what: str) -> RobotLost:
         return RobotLost(

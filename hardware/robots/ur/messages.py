@@ -1,11 +1,20 @@
-"""What the driver and its worker process say to each other."""
+"""What the driver and its worker process send each other: requests, replies, and a state at every cycle."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from core.child_process import SPAWN
+from core.geometry import AnyArray
+from core.motion.arm_models import ArmModel
+from core.motion.kinematics import flange_pose
 from hardware.errors import RobotError
+from hardware.interfaces import RobotState
+from hardware.modes import RobotMode, SafetyMode
+from hardware.robots.ur.pose_vectors import pose_from_vector
 
 
 @dataclass(frozen=True)
@@ -58,7 +67,101 @@ class Connected:
 
 @dataclass(frozen=True)
 class Ended:
-    """The present move is over: at its target, or elsewhere, for a reason, after a share of its way."""
+    """The present move is over: at its target, or elsewhere, for a reason, after a share of its path."""
 
     error: RobotError | None
     progress: float
+
+
+RUNTIME_PLAYING = 2
+"""The runtime state of a controller whose program runs; all others lead to or from a stop."""
+
+FIELDS = np.dtype(
+    [
+        ("time_s", "f8"),
+        ("controller_s", "f8"),
+        ("joints_rad", "f8", 6),
+        ("target_joints_rad", "f8", 6),
+        ("joint_speeds_rad_s", "f8", 6),
+        ("tool_pose", "f8", 6),
+        ("speed_scaling", "f8"),
+        ("robot_mode", "i8"),
+        ("safety_mode", "i8"),
+        ("runtime_state", "i8"),
+        ("output_bits", "i8"),
+        ("progress", "f8"),
+    ]
+)
+"""One state; `tool_pose` is metres and a rotation vector, `time_s` is `time.monotonic`, which all processes
+of a machine share, `progress` is the share of the present move."""
+
+_COUNT_BYTES = 8
+
+
+class StateMailbox:
+    """Holds the newest state; one process writes, any number of threads read, nobody ever waits.
+
+    The writer fills one of two places and then says which by a counter, so a writer that is killed or frozen
+    at any moment leaves a whole state behind.
+    """
+
+    def __init__(self) -> None:
+        """Make it empty, in memory that a spawned process shares when it is handed over."""
+        self._memory = SPAWN.RawArray("b", _COUNT_BYTES + 2 * FIELDS.itemsize)
+
+    def write(self, state: AnyArray) -> None:
+        """Make a state (a scalar of `FIELDS`) the newest."""
+        count, places = self._views()
+        places[(count[0] + 1) % 2] = state
+        count[0] += 1
+
+    def read(self) -> AnyArray | None:
+        """Return the newest state; none before the first."""
+        count, places = self._views()
+        while True:
+            before = int(count[0])
+            if before == 0:
+                return None
+            newest = places[before % 2].copy()
+            if count[0] == before:
+                return np.asarray(newest)
+
+    def _views(self) -> tuple[Any, Any]:
+        memory = memoryview(self._memory)
+        count = np.frombuffer(memory, np.int64, count=1)
+        return count, np.frombuffer(memory, FIELDS, offset=_COUNT_BYTES)
+
+
+def robot_mode(raw: AnyArray) -> RobotMode:
+    """How far the arm is switched on; a number that nobody knows is not ready."""
+    number = int(raw["robot_mode"])
+    return RobotMode(number) if number in set(RobotMode) else RobotMode.NO_CONTROLLER
+
+
+def safety_mode(raw: AnyArray) -> SafetyMode:
+    """Whether the safety system lets the arm move; a number that nobody knows does not."""
+    number = int(raw["safety_mode"])
+    return SafetyMode(number) if number in set(SafetyMode) else SafetyMode.UNDEFINED
+
+
+_TOOL_OUTPUT_BIT = 16
+"""Of the digital outputs 0-7 are the cabinet's, 8-15 configurable, 16 and 17 the tool's."""
+
+
+def robot_state(raw: AnyArray, arm: ArmModel) -> RobotState:
+    """Return a state of `FIELDS` as the interface defines it."""
+    bits = int(raw["output_bits"]) >> _TOOL_OUTPUT_BIT
+    return RobotState(
+        joints_rad=raw["joints_rad"],
+        target_joints_rad=raw["target_joints_rad"],
+        joint_speeds_rad_s=raw["joint_speeds_rad_s"],
+        T_base_flange=flange_pose(arm, raw["joints_rad"]),
+        T_base_tool=pose_from_vector(raw["tool_pose"]),
+        robot_mode=robot_mode(raw),
+        safety_mode=safety_mode(raw),
+        is_program_running=int(raw["runtime_state"]) == RUNTIME_PLAYING,
+        tool_outputs=(bool(bits & 1), bool(bits & 2)),
+        speed_scaling=float(np.clip(raw["speed_scaling"], 0.0, 1.0)),
+        controller_s=float(raw["controller_s"]),
+        time_s=float(raw["time_s"]),
+    )

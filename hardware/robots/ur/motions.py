@@ -12,20 +12,20 @@ import numpy as np
 
 from core.geometry import AnyArray, FloatArray
 from core.motion.trajectory import JointTrajectory
-from hardware.errors import MoveRefused, RobotError, TrackingLost
-from hardware.robots.ur.watching import deviation, tracking_lost
+from hardware.errors import MoveRefused, TrackingLost
+from hardware.robots.ur.checks import deviation, raise_if, tracking_lost
 
 ARRIVED_RAD = 1e-3
-STANDING_RAD_S = 1e-3
+RESTING_RAD_S = 1e-3
 _STUCK_S = 1.0
-"""An arm that stands this long without having arrived was lost on its way."""
+"""An arm at rest for this long without having arrived was lost before its target."""
 _LOOKAHEAD_S = 0.03
 """Least that servoj takes: its smoothing cuts corners by the square of this time."""
 _GAIN = 300.0
 _MOST_CYCLES = 2
 """The trajectory's clock never advances more at a time: after a hiccup the arm goes on and does not hurry."""
 _LAG_S = 0.5
-"""How far behind its targets the arm may be on the way: servoj's smoothing and the link's latency."""
+"""How far behind its targets the arm may be during a motion: servoj's smoothing and the link's latency."""
 _LAG_SAMPLES = 26
 _SETTLE_S = 1.0
 _SETTLED_RAD_S2 = 2.0
@@ -48,7 +48,7 @@ class Control(Protocol):
 
 
 class Motion(Protocol):
-    """A motion on its way.
+    """A motion under way.
 
     Attributes:
         progress: share that is done, 0 to 1.
@@ -72,7 +72,7 @@ class Motion(Protocol):
 
 
 class JointMoves:
-    """Straight joint moves from corner to corner; the arm stands at each."""
+    """Straight joint moves from corner to corner; the arm stops at each."""
 
     is_streaming = False
 
@@ -85,49 +85,51 @@ class JointMoves:
         self._speed, self._acceleration = speed_rad_s, acceleration_rad_s2
         lengths = [float(np.abs(end - start).max()) for start, end in pairwise(path_rad)]
         self._total_rad = sum(lengths)
-        # A move to where the arm stands would never show that it was begun.
-        self._left = [(end, way) for end, way in zip(path_rad[1:], lengths, strict=True) if way > ARRIVED_RAD]
+        # A move to where the arm is would never show that it was begun.
+        self._left = [
+            (end, length) for end, length in zip(path_rad[1:], lengths, strict=True) if length > ARRIVED_RAD
+        ]
         self._is_under_way = False
-        self._stands_since_s: float | None = None
+        self._resting_since_s: float | None = None
 
     def step(self, raw: AnyArray) -> bool:
-        """Begin the next move where the arm stands at a corner; see `Motion`."""
-        _raise(deviation(raw))
+        """Begin the next move when the arm is at a corner; see `Motion`."""
+        raise_if(deviation(raw))
         if self._left and self._is_under_way and self._has_arrived(raw):
             self._left.pop(0)
             self._is_under_way = False
         if self._left and not self._is_under_way:
             self._begin(raw)
-        ahead_rad = sum(way for _, way in self._left[1:])
+        ahead_rad = sum(length for _, length in self._left[1:])
         if self._left:
             ahead_rad += min(float(np.abs(self._left[0][0] - raw["joints_rad"]).max()), self._left[0][1])
         self.progress = 1 - ahead_rad / self._total_rad if self._total_rad else 1.0
         return not self._left
 
     def stop(self, deceleration_rad_s2: float) -> None:
-        """Brake; returns before the arm stands."""
+        """Brake; returns before the arm is at rest."""
         self._left.clear()
         self._control.stopJ(deceleration_rad_s2, True)
 
     def _begin(self, raw: AnyArray) -> None:
         self._is_under_way = True
-        self._stands_since_s = float(raw["time_s"])
+        self._resting_since_s = float(raw["time_s"])
         if not self._control.moveJ(self._left[0][0].tolist(), self._speed, self._acceleration, True):
             raise MoveRefused("The controller did not take the move; recover the robot and plan anew.")
 
     def _has_arrived(self, raw: AnyArray) -> bool:
-        if np.abs(raw["joint_speeds_rad_s"]).max() > STANDING_RAD_S:
-            self._stands_since_s = None
+        if np.abs(raw["joint_speeds_rad_s"]).max() > RESTING_RAD_S:
+            self._resting_since_s = None
             return False
         if np.abs(self._left[0][0] - raw["joints_rad"]).max() < ARRIVED_RAD:
             return True
         now_s = float(raw["time_s"])
-        if self._stands_since_s is None or raw["speed_scaling"] < 0.01:
-            self._stands_since_s = now_s
-        if now_s - self._stands_since_s > _STUCK_S:
+        if self._resting_since_s is None or raw["speed_scaling"] < 0.01:
+            self._resting_since_s = now_s
+        if now_s - self._resting_since_s > _STUCK_S:
             raise TrackingLost(
-                "The arm stands, but not where it was sent; see what holds it, then recover the robot and "
-                "plan anew."
+                "The arm has stopped, but not where it was sent; see what holds it, then recover the robot "
+                "and plan anew."
             )
         return False
 
@@ -151,13 +153,13 @@ class Following:
         """Send the next target; see `Motion`."""
         if self._last_bit is not None:
             return self._last_bit.step(raw)
-        _raise(deviation(raw))
+        raise_if(deviation(raw))
         now_s = float(raw["controller_s"])
         passed_s = 0.0 if self._last_s is None else now_s - self._last_s
         self._last_s = now_s
         self._clock_s += min(max(passed_s, 0.0), _MOST_CYCLES * self._cycle_s) * float(raw["speed_scaling"])
         self.progress = min(self._clock_s / self._trajectory.duration_s, 1.0)
-        _raise(tracking_lost(raw["joints_rad"], self._expected(), "its way"))
+        raise_if(tracking_lost(raw["joints_rad"], self._expected(), "its path"))
         if self._clock_s >= self._trajectory.duration_s:
             if self._settles_since_s is None:
                 self._settles_since_s = float(raw["time_s"])
@@ -169,25 +171,25 @@ class Following:
         return False
 
     def stop(self, deceleration_rad_s2: float) -> None:
-        """Brake; returns when the arm stands."""
+        """Brake; returns when the arm is at rest."""
         if self._last_bit is not None:
             self._last_bit.stop(deceleration_rad_s2)
         else:
             self._control.servoStop(deceleration_rad_s2)
 
     def _expected(self) -> FloatArray:
-        """Where (N, 6) the arm may be now: the last bit of the way it was asked to go."""
+        """Where (N, 6) the arm may be now: the last part of its commanded path."""
         times_s = self._clock_s - np.linspace(0.0, _LAG_S, _LAG_SAMPLES)
         return np.column_stack(
             [np.interp(times_s, self._trajectory.times_s, column) for column in self._trajectory.joints_rad.T]
         )
 
     def _is_settled(self, raw: AnyArray) -> bool:
-        stands = np.abs(raw["joint_speeds_rad_s"]).max() < STANDING_RAD_S
-        return bool(stands and self._apart_rad(raw) < ARRIVED_RAD / 2)
+        is_still = np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S
+        return bool(is_still and self._apart_rad(raw) < ARRIVED_RAD / 2)
 
     def _finish(self, raw: AnyArray) -> bool:
-        """Leave servoing; a small rest of the way is made as a slow joint move."""
+        """Leave servoing; a small remaining distance is covered as a slow joint move."""
         self.is_streaming = False
         self._control.servoStop(_SETTLED_RAD_S2)
         apart_rad = self._apart_rad(raw)
@@ -195,7 +197,7 @@ class Following:
             return True
         if apart_rad > _LAST_BIT_RAD:
             raise TrackingLost(
-                f"The arm ended {np.degrees(apart_rad):.1f} degrees from the end of its way; see what holds "
+                f"The arm ended {np.degrees(apart_rad):.1f} degrees from the end of its path; see what holds "
                 "it, then recover the robot and plan anew."
             )
         path = np.array([raw["joints_rad"], self._trajectory.end_rad])
@@ -204,8 +206,3 @@ class Following:
 
     def _apart_rad(self, raw: AnyArray) -> float:
         return float(np.abs(raw["joints_rad"] - self._trajectory.end_rad).max())
-
-
-def _raise(error: RobotError | None) -> None:
-    if error is not None:
-        raise error

@@ -1,4 +1,4 @@
-"""Is there a UR controller at an address? Asked before anything is built on it: ur_rtde waits for ever."""
+"""The controller's ports beside ur_rtde: is a UR controller there, and what is set by a small script."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import socket
 import struct
 import time
 
-from hardware.errors import RobotUnreachable
+from hardware.errors import RobotLost, RobotUnreachable
 
 DASHBOARD_PORT = 29999
 SCRIPT_PORT = 30003
@@ -69,3 +69,27 @@ def _receive(connection: socket.socket, at_least: int, deadline_s: float) -> byt
 
 def _left_s(deadline_s: float) -> float:
     return max(deadline_s - time.monotonic(), 0.05)
+
+
+_SEND_S = 2.0
+
+
+def set_tool_voltage(address: str, voltage_v: int) -> None:
+    """Set the supply of the tool connector (0, 12 or 24 V) by a secondary program (URScript manual, `sec`).
+
+    It has to be sent before the control program starts: whether the controller keeps that one running beside
+    it was never tried on an arm. ur_rtde 1.6.5 neither sets nor reads this voltage, so it is not verified;
+    the robot's panel shows it under I/O.
+
+    Raises:
+        RobotLost: the script could not be sent.
+    """
+    script = f"sec poursight_tool_voltage():\n  set_tool_voltage({voltage_v})\nend\n"
+    try:
+        with socket.create_connection((address, SCRIPT_PORT), _SEND_S) as connection:
+            connection.sendall(script.encode())
+    except OSError as error:
+        raise RobotLost(
+            f"The script port of the controller at {address} takes nothing ({error}); check the network "
+            "cable, then recover the robot."
+        ) from error

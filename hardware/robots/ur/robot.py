@@ -16,7 +16,6 @@ import numpy.typing as npt
 
 from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import ArmModel
-from core.motion.kinematics import N_JOINTS, within_limits
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import (
     MoveRefused,
@@ -27,24 +26,26 @@ from hardware.errors import (
     RobotStopped,
 )
 from hardware.interfaces import RobotState
-from hardware.robots.ur.dashboard import Dashboard
-from hardware.robots.ur.identity import refuse_local_control, refuse_other_kinematics, refuse_other_model
-from hardware.robots.ur.link import WorkerLink
-from hardware.robots.ur.mailbox import RUNTIME_PLAYING
-from hardware.robots.ur.messages import Ended, Setup
+from hardware.robots.joint_motion import checked_path
+from hardware.robots.ur.checks import (
+    raise_if,
+    refuse_local_control,
+    refuse_other_kinematics,
+    refuse_other_model,
+    unsafe,
+)
+from hardware.robots.ur.dashboard import Dashboard, make_ready
+from hardware.robots.ur.link import UrMove, WorkerLink
+from hardware.robots.ur.messages import RUNTIME_PLAYING, Ended, Setup, robot_state
 from hardware.robots.ur.motions import ARRIVED_RAD
-from hardware.robots.ur.move import UrMove
-from hardware.robots.ur.probe import probe
-from hardware.robots.ur.recovery import make_ready
-from hardware.robots.ur.script_port import set_tool_voltage
-from hardware.robots.ur.state import robot_state, tool_vector
-from hardware.robots.ur.watching import unsafe
+from hardware.robots.ur.pose_vectors import vector_from_pose
+from hardware.robots.ur.probe import probe, set_tool_voltage
 
 STOP_ANSWER_S = 0.1
 """A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
 _CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
-_STANDS_WITHIN_S = 0.3
-_STANDING_RAD_S = 0.01
+_RESTS_WITHIN_S = 0.3
+_RESTING_RAD_S = 0.01
 _DASHBOARD_STOP_S = 0.3
 _OUTPUT_WITHIN_S = 0.5
 _POLL_S = 0.004
@@ -138,13 +139,13 @@ class UR5Robot:
         return robot_state(self._connected().worker.state(), self._arm)
 
     def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> UrMove:
-        """Start to move through joint configurations (N, 6), the first being where the arm stands.
+        """Start to move through joint configurations (N, 6), the first being where the arm is.
 
         Raises:
-            RobotError: the path is none, the arm is elsewhere, moving or not ready, was stopped and not
+            RobotError: the path is not one, the arm is elsewhere, moving or not ready, was stopped and not
                 recovered, or cannot be reached.
         """
-        path = self._checked(path_rad)
+        path = checked_path(self._arm, self.name, path_rad)
         return self._start("move_joints", path, float(speed_rad_s), float(acceleration_rad_s2), start=path[0])
 
     def follow(self, trajectory: JointTrajectory) -> UrMove:
@@ -153,17 +154,17 @@ class UR5Robot:
         Raises:
             RobotError: as with `move_joints`.
         """
-        self._checked(trajectory.joints_rad)
+        checked_path(self._arm, self.name, trajectory.joints_rad)
         return self._start("follow", trajectory, start=trajectory.start_rad)
 
     def stop(self) -> None:
-        """Stop what moves and refuse further moves until `recover`; returns when the arm stands.
+        """Stop what moves and refuse further moves until `recover`; returns when the arm is at rest.
 
         Works from any thread. A driver that does not answer within `STOP_ANSWER_S`, or an arm that does not
-        come to a stand, is stopped through the dashboard, and a warning in the log says so.
+        come to rest, is stopped through the dashboard, and a warning in the log says so.
 
         Raises:
-            RobotLost: no way to the controller is left.
+            RobotLost: no connection to the controller is left.
         """
         stopped = RobotStopped(f"The {self.name} was stopped; see that all is well, then recover the robot.")
         self._refusal = self._refusal or stopped
@@ -172,7 +173,7 @@ class UR5Robot:
             connection.worker.ask("stop", within_s=STOP_ANSWER_S)
             if self._comes_to_rest(connection.worker):
                 return
-            why = "it did not come to a stand"
+            why = "it did not come to rest"
         except RobotError as error:
             why = str(error)
         _log.warning("The %s was stopped through its dashboard: %s", self.name, why)
@@ -180,7 +181,8 @@ class UR5Robot:
             connection.dashboard.stop(_DASHBOARD_STOP_S)
         except RobotLost as error:
             raise RobotLost(
-                f"The {self.name} cannot be told to stop ({error}); press the emergency stop if it moves."
+                f"The {self.name} cannot be reached for a stop ({error}); press the emergency stop if "
+                "it moves."
             ) from error
         if self._move is not None:
             self._move.end(stopped)
@@ -196,7 +198,7 @@ class UR5Robot:
         with self._command_lock:
             self._disconnect()
             # Not later: a stop that comes meanwhile has to be recovered from anew. Not earlier: the old
-            # worker's last word may come until it is gone.
+            # worker's last message may come until it is gone.
             self._refusal = None
             probe(self._address)
             dashboard = Dashboard(self._address)
@@ -210,7 +212,7 @@ class UR5Robot:
     def set_tool_output(self, output: int, value: bool) -> None:
         """Set a digital output of the tool (0 or 1) and see that it is set.
 
-        Measured with ur_rtde 1.6.5: the first write after a lost link is lost without a word. So the output
+        Measured with ur_rtde 1.6.5: the first write after a lost link is lost without an error. So the output
         is read back, and written once more if need be.
 
         Raises:
@@ -240,7 +242,9 @@ class UR5Robot:
                 set_tool_voltage(self._address, self._tool_voltage_v)
             self.controller_version = dashboard.version()
             cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
-            setup = Setup(self._address, tool_vector(self._T_flange_tool), *self._payload, cycle_s)
+            setup = Setup(
+                self._address, vector_from_pose(self._T_flange_tool).tolist(), *self._payload, cycle_s
+            )
             worker = WorkerLink(setup, self._on_ended, self._on_lost)
             try:
                 refuse_other_kinematics(worker.state(), self._arm, self._T_flange_tool, *self._tolerances)
@@ -266,15 +270,8 @@ class UR5Robot:
             raise RobotLost(f"The {self.name} is not connected; recover the robot.")
         return self._connection
 
-    def _checked(self, joints_rad: npt.ArrayLike) -> FloatArray:
-        path = np.array(joints_rad, dtype=float)
-        is_path = path.ndim == 2 and len(path) > 0 and path.shape[1] == N_JOINTS
-        if not is_path or not within_limits(self._arm, path).all():
-            raise RobotError(f"The {self.name} cannot take these joint angles; plan the motion anew.")
-        return path
-
     def _start(self, request: str, *arguments: Any, start: FloatArray) -> UrMove:
-        """Hand a motion to the worker if the arm is ready and stands where it begins."""
+        """Hand a motion to the worker if the arm is ready and at rest where it begins."""
         with self._command_lock:
             worker = self._connected().worker
             if self._refusal is not None:
@@ -289,16 +286,14 @@ class UR5Robot:
             return move
 
     def _refuse_unready(self, raw: AnyArray, start_rad: FloatArray) -> None:
-        error = unsafe(raw)
-        if error is not None:
-            raise error
+        raise_if(unsafe(raw))
         if int(raw["runtime_state"]) != RUNTIME_PLAYING:
             raise ProgramStopped(
                 f"The control program on the {self.name} does not run any more; recover the robot."
             )
         is_moving = self._move is not None and not self._move.is_done
-        if is_moving or np.abs(raw["joint_speeds_rad_s"]).max() > _STANDING_RAD_S:
-            raise RobotError(f"The {self.name} is still moving; stop it or wait until it stands.")
+        if is_moving or np.abs(raw["joint_speeds_rad_s"]).max() > _RESTING_RAD_S:
+            raise RobotError(f"The {self.name} is still moving; stop it or wait until it stops.")
         if np.abs(start_rad - raw["joints_rad"]).max() > ARRIVED_RAD:
             raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
 
@@ -318,7 +313,7 @@ class UR5Robot:
         self._end_program(error)
 
     def _end_program(self, error: RobotError) -> RobotError:
-        """End the program through the dashboard and return the error, more exact where it can be told."""
+        """End the program through the dashboard and return the error, more exact where that is known."""
         connection = self._connection
         if connection is None:
             return error
@@ -333,8 +328,8 @@ class UR5Robot:
         return error
 
     def _comes_to_rest(self, worker: WorkerLink) -> bool:
-        deadline_s = time.monotonic() + _STANDS_WITHIN_S
-        while np.abs(worker.state()["joint_speeds_rad_s"]).max() > _STANDING_RAD_S:
+        deadline_s = time.monotonic() + _RESTS_WITHIN_S
+        while np.abs(worker.state()["joint_speeds_rad_s"]).max() > _RESTING_RAD_S:
             if time.monotonic() > deadline_s:
                 return False
             time.sleep(_POLL_S)

@@ -1,4 +1,4 @@
-"""A way to the controller for STOP alone, kept open beside whatever else talks to it."""
+"""A connection to the controller for STOP alone, kept open beside whatever else talks to it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class StopLine:
         answer = self._by_open_line() or self._by_new_line()
         if _REFUSED in answer.lower():
             raise RobotError(
-                f"The controller at {self._address} takes no stop ({answer}); press the emergency stop if "
+                f"The controller at {self._address} refuses to stop ({answer}); press the emergency stop if "
                 "the arm moves."
             )
 
@@ -81,8 +81,8 @@ class StopLine:
                 return _receive_line(line)
         except OSError as error:
             raise RobotLost(
-                f"The controller at {self._address} cannot be told to stop ({error}); press the emergency "
-                "stop if the arm moves."
+                f"The controller at {self._address} cannot be reached for a stop ({error}); press the "
+                "emergency stop if the arm moves."
             ) from error
 
     def _keep_open(self) -> None:
@@ -96,7 +96,7 @@ class StopLine:
             self._is_closed.wait(_AGAIN_S)
 
     def _listen(self, line: socket.socket) -> None:
-        """Note every answer until the line breaks; nothing but stops is ever asked."""
+        """Note every answer until the line breaks; nothing but stops is ever sent."""
         while True:
             self._answer = _receive_line(line)
             self._has_answered.set()
@@ -148,7 +148,7 @@ def _receive_line(line: socket.socket) -> str:
 
 
 def _hang_up(line: socket.socket | None) -> None:
-    """Break a connection whose other thread waits for words."""
+    """Break a connection on which another thread waits."""
     if line is not None:
         with suppress(OSError):
             line.shutdown(socket.SHUT_RDWR)

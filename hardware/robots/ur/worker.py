@@ -3,18 +3,16 @@
 Measured with ur_rtde 1.6.5: constructors against a silent server hang for ever and hold the interpreter's
 lock, destructors after a lost link crash, blocking moves cannot be stopped, and two threads that call one
 control object get each other's answers. So here one thread makes all control calls, all of them asynchronous,
-another one reads states, the process ends without destructors, and its parent ends it when it says nothing.
+another one reads states, the process ends without destructors, and its parent ends it when it is silent.
 """
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import time
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from multiprocessing.connection import wait as wait_for_handles
 from threading import Event, Thread
 from typing import NoReturn
 
@@ -36,15 +34,24 @@ from hardware.errors import (
     RobotUnreachable,
 )
 from hardware.realtime import take_precedence
-from hardware.robots.ur.mailbox import FIELDS, RUNTIME_PLAYING, StateMailbox
-from hardware.robots.ur.messages import Connected, Ended, Reply, Request, Setup, Started
+from hardware.robots.ur.checks import deviation, raise_if, unsafe
+from hardware.robots.ur.messages import (
+    FIELDS,
+    RUNTIME_PLAYING,
+    Connected,
+    Ended,
+    Reply,
+    Request,
+    Setup,
+    Started,
+    StateMailbox,
+)
 from hardware.robots.ur.motions import Following, JointMoves, Motion
-from hardware.robots.ur.watching import deviation, unsafe
 
 _HANGS_S = 12
 """Later than the parent, which ends a worker that does not connect in time; this is for when it is gone."""
 WATCHDOG_HZ = 3.5
-"""Without a word for this time's inverse the controller ends the program, and the arm brakes and stands."""
+"""Without a word for this time's inverse the controller ends the program, and the arm brakes to rest."""
 _KICK_S = 0.04
 _IDLE_S = 0.01
 _BRAKE_WITHIN_S = 0.12
@@ -55,14 +62,11 @@ _TAKEN_S = 1.0
 _SAME = 1e-4
 
 
-def serve(setup: Setup, connection: Connection, mailbox: StateMailbox) -> NoReturn:
-    """Connect, tell the parent, and do what it asks until it asks to end or is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def serve(connection: Connection, setup: Setup, mailbox: StateMailbox) -> NoReturn:
+    """Connect, report it to the parent, and do what it requests until it requests the end or is gone."""
     # A constructor that hangs keeps Python from running at all; this signal ends the process all the same.
     signal.alarm(_HANGS_S)
-    _be_quiet()
     take_precedence()
-    Thread(target=_end_with_parent, daemon=True).start()
     connection.send(Started())
     try:
         worker = _Worker(setup, connection, mailbox)
@@ -91,7 +95,7 @@ class _Worker:
         try:
             self._receive = rtde_receive.RTDEReceiveInterface(setup.address)
             self._latest = self._read()
-            _refuse(unsafe(self._latest))
+            raise_if(unsafe(self._latest))
             self._control = rtde_control.RTDEControlInterface(setup.address)
             self._io = rtde_io.RTDEIOInterface(setup.address)
             self._set_up(setup)
@@ -156,17 +160,17 @@ class _Worker:
         if self._is_over:
             raise MoveRefused("The arm was stopped; recover the robot first.")
         if self._motion is not None:
-            raise MoveRefused("The arm is still moving; stop it or wait until it stands.")
+            raise MoveRefused("The arm is still moving; stop it or wait until it stops.")
         self._motion = motion
 
     def _stop(self, request: Request) -> None:
-        """Stop for good: only a new worker moves again, so no request on its way can begin a move later."""
+        """Stop for good: only a new worker moves again, so no request in flight can begin a move later."""
         self._is_over = True
         self._connection.send(Reply(request.number, None))
         motion, self._motion = self._motion, None
         if motion is not None:
             self._brake(motion)
-            stopped = RobotStopped("The arm was stopped on its way; plan its motion anew.")
+            stopped = RobotStopped("The arm was stopped before it arrived; plan its motion anew.")
             self._connection.send(Ended(stopped, motion.progress))
         if request.name == "end":
             self._control.stopScript()
@@ -194,7 +198,7 @@ class _Worker:
 
     def _brake(self, motion: Motion) -> None:
         fastest_rad_s = float(np.abs(self._latest["joint_speeds_rad_s"]).max())
-        # The parent sees an arm that does not stand, and ends the program through the dashboard.
+        # The parent sees an arm that does not come to rest, and ends the program through the dashboard.
         with suppress(RuntimeError):
             motion.stop(float(np.clip(fastest_rad_s / _BRAKE_WITHIN_S, *_BRAKE_LIMITS_RAD_S2)))
 
@@ -213,14 +217,14 @@ class _Worker:
         return error
 
     def _kick(self) -> None:
-        """Tell the controller that we are there; a stopped program does not listen."""
+        """Signal the controller that we are there; a stopped program does not listen."""
         now_s = time.monotonic()
         if now_s - self._kicked_s > _KICK_S and int(self._latest["runtime_state"]) == RUNTIME_PLAYING:
             self._kicked_s = now_s
             self._control.kickWatchdog()
 
     def _publish(self) -> None:
-        """Pass every state on; when there are none any more, their age tells the parent."""
+        """Pass every state on; when there are none any more, their age shows it to the parent."""
         pause_s = self._cycle_s / 4
         while True:
             if self._receive.getTimestamp() == self._latest["controller_s"]:
@@ -251,42 +255,23 @@ class _Worker:
         return raw
 
 
-def _refuse(error: RobotError | None) -> None:
-    if error is not None:
-        raise error
-
-
 def _explain(error: RuntimeError, address: str) -> DeviceError:
-    """What ur_rtde's own words mean for people."""
-    said = str(error)
-    if "remote control" in said:
+    """What ur_rtde's own messages mean for people."""
+    message = str(error)
+    if "remote control" in message:
         return NotInRemoteControl(
             f"The controller at {address} is in local control; choose remote control at the top right of its "
             "panel, then recover the robot."
         )
-    if "in use" in said or "variables" in said:
+    if "in use" in message or "variables" in message:
         return RobotNotReady(
             f"Another program drives the arm at {address} already; end it, then recover the robot."
         )
-    if "control script" in said:
+    if "control script" in message:
         return RobotNotReady(
             f"The control program does not start on the controller at {address}; see what its panel shows, "
             "then recover the robot."
         )
     return RobotUnreachable(
-        f"The controller at {address} broke off ({said}); check the network cable, then try again."
+        f"The controller at {address} broke off ({message}); check the network cable, then try again."
     )
-
-
-def _be_quiet() -> None:
-    """ur_rtde prints its progress from C, to both outputs."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    for descriptor in (1, 2):
-        os.dup2(nowhere, descriptor)
-
-
-def _end_with_parent() -> NoReturn:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        wait_for_handles([parent.sentinel])
-    os._exit(1)

@@ -1,4 +1,4 @@
-"""The candies of one pour: each of its own size, and how they lie in the cup before they settle."""
+"""The candies of one pour: each of its own size, in the cup before they settle, or in the object already."""
 
 from __future__ import annotations
 
@@ -6,16 +6,17 @@ from dataclasses import dataclass
 from math import asin, cos, floor, pi, radians, sin
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
-from core.geometry import FloatArray, ellipsoid_inertia_kg_m2
+from core.geometry import FloatArray, ellipsoid_inertia_kg_m2, transform_points
 from core.imagination.cup import inner_radius_m
-from core.parameters.imagination import CupParameters
+from core.parameters.bodies import CupParameters
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 
-_SIDES = 12
-_LENTIL_HEIGHTS = (-0.6, 0.0, 0.6)
-_SKIN = 0.7
+_SIDES = 16
+_LENTIL_HEIGHTS = (-0.7, 0.0, 0.7)
+_SKIN = 0.6
 """Thickness of a candy's skin, relative to half its thickness: while only skins touch, contacts are quick to
 find and exact, and a fast candy is seen by a wall before it is in it."""
 _MAX_TILT_RAD = radians(20)
@@ -27,21 +28,32 @@ _LARGEST_SD = 3.0
 
 @dataclass(frozen=True)
 class Candies:
-    """The candies of one pour.
+    """Candies, each of its own size.
 
     Attributes:
         scales: (N,) size of each, relative to the mean size.
-        positions_m: (N, 3) centres at the start, in the cup's frame; no two touch.
-        quaternions: (N, 4) orientations there, (x, y, z, w).
+        positions_m: (N, 3) centres; no two touch.
+        quaternions: (N, 4) orientations, (x, y, z, w).
     """
 
     scales: FloatArray
     positions_m: FloatArray
     quaternions: FloatArray
 
+    def moved(self, T_to_from: FloatArray) -> Candies:
+        """Return them moved by (4, 4), or seen from another frame."""
+        if not len(self.scales):
+            return self
+        rotation = Rotation.from_matrix(T_to_from[:3, :3])
+        quaternions: FloatArray = (rotation * Rotation.from_quat(self.quaternions)).as_quat()
+        return Candies(self.scales, transform_points(T_to_from, self.positions_m), quaternions)
+
+
+NO_CANDIES = Candies(np.empty(0), np.empty((0, 3)), np.empty((0, 4)))
+
 
 def fill_cup(cup: CupParameters, settings: OutcomeSettings) -> Candies:
-    """Draw sizes and lay the candies into the standing cup, layer upon layer, each a little tilted.
+    """Draw sizes and lay candies into the standing cup, in its frame: layer upon layer, a little tilted.
 
     Raises:
         InputError: the cup cannot hold so many.
@@ -57,7 +69,7 @@ def fill_cup(cup: CupParameters, settings: OutcomeSettings) -> Candies:
     height_m = (
         _APART
         * largest
-        * (settings.candy_diameter_m * sin(_MAX_TILT_RAD) + settings.candy_height_m * cos(_MAX_TILT_RAD))
+        * (settings.candy_diameter_m * sin(_MAX_TILT_RAD) + thickness_m(settings) * cos(_MAX_TILT_RAD))
     )
     layers = []
     for layer in range(floor((cup.length_m - cup.wall_m) / height_m)):
@@ -68,7 +80,7 @@ def fill_cup(cup: CupParameters, settings: OutcomeSettings) -> Candies:
     if len(positions) < n:
         diameter_mm = batch * settings.candy_diameter_m * 1000
         raise InputError(
-            f"The cup has room for {len(positions)} candies of {diameter_mm:.1f} mm, "
+            f"The cup holds only {len(positions)} candies of {diameter_mm:.1f} mm, "
             f"not for {n}; lower n_candies or take a larger cup."
         )
     return Candies(scales, positions[:n], _tilted(n, random))
@@ -80,11 +92,15 @@ def _batch_scale(settings: OutcomeSettings) -> float:
     return 1 + settings.batch_spread * float(drawn)
 
 
+def thickness_m(settings: OutcomeSettings) -> float:
+    """Mean extent of a candy along its axis."""
+    is_ball = settings.candy_shape == "ball"
+    return settings.candy_diameter_m if is_ball else settings.candy_height_m
+
+
 def hull_m(settings: OutcomeSettings, scale: float) -> FloatArray:
     """Vertices (n, 3) of the hull inside a candy's skin, which lies flat in z."""
-    half = (
-        scale * np.array([settings.candy_diameter_m, settings.candy_diameter_m, settings.candy_height_m]) / 2
-    )
+    half = scale * np.array([settings.candy_diameter_m, settings.candy_diameter_m, thickness_m(settings)]) / 2
     angles = np.arange(_SIDES) * 2 * pi / _SIDES
     circle = np.column_stack([np.cos(angles), np.sin(angles)])
     if settings.candy_shape == "tablet":
@@ -98,7 +114,7 @@ def hull_m(settings: OutcomeSettings, scale: float) -> FloatArray:
 
 def skin_m(settings: OutcomeSettings, scale: float) -> float:
     """Thickness of the round skin that Bullet lays around a candy's hull (its collision margin)."""
-    return _SKIN * scale * min(settings.candy_height_m, settings.candy_diameter_m) / 2
+    return _SKIN * scale * min(thickness_m(settings), settings.candy_diameter_m) / 2
 
 
 def inertia_kg_m2(settings: OutcomeSettings, scale: float) -> FloatArray:
@@ -108,13 +124,11 @@ def inertia_kg_m2(settings: OutcomeSettings, scale: float) -> FloatArray:
         across_m, up_m = scale * settings.candy_diameter_m / 2, scale * settings.candy_height_m / 2
         about_x = across_m**2 / 4 + up_m**2 / 3
         return mass_kg * np.array([about_x, about_x, across_m**2 / 2])
-    return ellipsoid_inertia_kg_m2(
-        mass_kg, scale * settings.candy_diameter_m, scale * settings.candy_height_m
-    )
+    return ellipsoid_inertia_kg_m2(mass_kg, scale * settings.candy_diameter_m, scale * thickness_m(settings))
 
 
 def _layer(radius_m: float, apart_m: float, random: np.random.Generator) -> FloatArray:
-    """Places (n, 2) on rings from the wall inwards, at least `apart_m` from each other, anyhow turned."""
+    """Places (n, 2) on rings from the wall inwards, at least `apart_m` from each other, at random angles."""
     places = [np.empty((0, 2))]
     while radius_m >= 0:
         is_ring = radius_m >= apart_m / 2

@@ -12,16 +12,16 @@ from core.motion.arm_models import ArmModel
 from core.motion.kinematics import flange_pose
 
 _ROTATION_TOLERANCE = 1e-3
-_STANDING_M = 0.0002
-"""Below what a candy in the cup can feel, above what a standing arm's encoders report."""
-_STANDING_RAD = 0.001
-_KEPT_STANDING_S = 0.2
-"""Standing still that is kept at both ends, so that the motion begins and ends at rest."""
+_RESTING_M = 0.0002
+"""Below what a candy in the cup can feel, above what the encoders of an arm at rest report."""
+_RESTING_RAD = 0.001
+_REST_AT_ENDS_S = 0.2
+"""Rest that stays at both ends, so that the motion begins and ends at rest."""
 
 
 @dataclass(frozen=True)
 class DrivenPath:
-    """Poses of the cup over time; between them it moves straight and turns evenly.
+    """Poses of the cup over time; between them it moves straight and rotates evenly.
 
     Attributes:
         times_s: (N,) strictly rising, N at least 2.
@@ -66,31 +66,31 @@ class DrivenPath:
         poses = np.tile(np.eye(4), (len(times), 1, 1))
         for k in range(3):
             poses[:, k, 3] = np.interp(times, self.times_s, self.T_base_cup[:, k, 3])
-        turns = Rotation.from_matrix(self.T_base_cup[:, :3, :3])
-        poses[:, :3, :3] = Slerp(self.times_s, turns)(times).as_matrix()
+        rotations = Rotation.from_matrix(self.T_base_cup[:, :3, :3])
+        poses[:, :3, :3] = Slerp(self.times_s, rotations)(times).as_matrix()
         return poses
 
     def in_hand(self, T_cup_slipped: FloatArray) -> DrivenPath:
         """Return the path of a cup that sits at `T_cup_slipped` (4, 4) of where it is believed."""
         return DrivenPath(self.times_s, self.T_base_cup @ T_cup_slipped)
 
-    def without_standing(self) -> DrivenPath:
-        """Return the path without long standing still at its ends: there nothing happens in the cup."""
+    def trimmed(self) -> DrivenPath:
+        """Return the path without long rests at its ends: nothing happens in the cup there."""
         away_from_start, away_from_end = (np.flatnonzero(~self._is_at(end)) for end in (0, -1))
         if len(away_from_start) == 0 or len(away_from_end) == 0:
             return self
-        first = self.times_s[away_from_start[0]] - _KEPT_STANDING_S
-        last = self.times_s[away_from_end[-1]] + _KEPT_STANDING_S
-        kept = (self.times_s >= first) & (self.times_s <= last)
-        return DrivenPath(self.times_s[kept], self.T_base_cup[kept])
+        first = self.times_s[away_from_start[0]] - _REST_AT_ENDS_S
+        last = self.times_s[away_from_end[-1]] + _REST_AT_ENDS_S
+        moving = (self.times_s >= first) & (self.times_s <= last)
+        return DrivenPath(self.times_s[moving], self.T_base_cup[moving])
 
     def _is_at(self, sample: int) -> BoolArray:
         """Whether the cup is (N,) where it is at `sample`, but for what the encoders' noise does."""
         there = self.T_base_cup[sample]
         away_m = np.linalg.norm(self.T_base_cup[:, :3, 3] - there[:3, 3], axis=1)
         # The Frobenius norm of R1 - R2 is 2 sqrt(2) sin(angle / 2).
-        turned = np.linalg.norm(self.T_base_cup[:, :3, :3] - there[:3, :3], axis=(1, 2)) / np.sqrt(2)
-        is_there: BoolArray = (away_m < _STANDING_M) & (turned < _STANDING_RAD)
+        rotated = np.linalg.norm(self.T_base_cup[:, :3, :3] - there[:3, :3], axis=(1, 2)) / np.sqrt(2)
+        is_there: BoolArray = (away_m < _RESTING_M) & (rotated < _RESTING_RAD)
         return is_there
 
 
@@ -140,12 +140,12 @@ def cup_motion(path: DrivenPath, rate_hz: float) -> CupMotion:
     steps = int(np.ceil(path.duration_s * rate_hz - 1e-9))
     times_s = path.times_s[0] + np.arange(steps + 1) / rate_hz
     poses = path.at(times_s)
-    positions, turns = poses[:, :3, 3], Rotation.from_matrix(poses[:, :3, :3])
+    positions, rotations = poses[:, :3, 3], Rotation.from_matrix(poses[:, :3, :3])
     rest = np.zeros((1, 3))
     return CupMotion(
         times_s,
         poses,
-        turns.as_quat(),
+        rotations.as_quat(),
         np.vstack([np.diff(positions, axis=0) * rate_hz, rest]),
-        np.vstack([(turns[1:] * turns[:-1].inv()).as_rotvec() * rate_hz, rest]),
+        np.vstack([(rotations[1:] * rotations[:-1].inv()).as_rotvec() * rate_hz, rest]),
     )

@@ -1,4 +1,4 @@
-"""What became of the candies when the cup was really driven along its path: the stand-in for the table."""
+"""Where the candies end when the cup is driven along its real path: the ground-truth simulation."""
 
 from __future__ import annotations
 
@@ -11,24 +11,18 @@ import numpy as np
 from core.errors import InputError
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import BoolArray, FloatArray, invert_pose, make_pose, rotation_z, transform_points
-from core.imagination.body import body_files
-from core.imagination.cup import cup_parts
 from core.imagination.recording import Recording
 from core.mesh import TriangleMesh
-from core.parameters.imagination import CupParameters
+from core.parameters.bodies import CupParameters
 from core.progress import Reporter
 from core.workers import TaskRunner
-from hardware.simulation.pour_outcome.candies import fill_cup
-from hardware.simulation.pour_outcome.counting import in_object
+from hardware.simulation.pour_outcome.bodies import Bodies, PlatformBox
+from hardware.simulation.pour_outcome.candies import NO_CANDIES, Candies, fill_cup
 from hardware.simulation.pour_outcome.driven_path import DrivenPath, cup_motion
-from hardware.simulation.pour_outcome.lying import NONE_LYING, LyingCandies
 from hardware.simulation.pour_outcome.playing import PlayedPour, pour_task
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
-from hardware.simulation.pour_outcome.table_world import Bodies, PlatformBox
 
 _UPRIGHT_COSINE = 0.95
-_WALL_SKIN_M = 0.001
-"""Bullet lays a skin as thick as this around the parts of the cup."""
 _TABLE_FILE, _ARRAY_FILE = "outcome.json", "outcome.npz"
 
 
@@ -58,11 +52,11 @@ class TableOutcome:
         return len(self.in_object)
 
     @property
-    def lying(self) -> LyingCandies:
+    def lying(self) -> Candies:
         """The candies that lie in the object now."""
         inside = self.in_object
         quaternions = self.recording.quaternions[-1][inside].astype(float)
-        found = LyingCandies(self.scales[inside], self.positions_m[inside], quaternions)
+        found = Candies(self.scales[inside], self.positions_m[inside], quaternions)
         return found.moved(invert_pose(self.T_given_stood))
 
     @property
@@ -77,7 +71,7 @@ class TableOutcome:
 
     @property
     def n_spilled(self) -> int:
-        """All others: on the platform, on the table, beside it."""
+        """All others: on the platform, on the table, or beside it."""
         return self.n_candies - self.n_in_object - self.n_in_cup
 
     def save(self, folder: Path) -> None:
@@ -126,7 +120,7 @@ def simulate_outcome(
     settings: OutcomeSettings,
     pool: TaskRunner,
     reporter: Reporter,
-    lying: LyingCandies = NONE_LYING,
+    lying: Candies = NO_CANDIES,
 ) -> TableOutcome:
     """Drive a cup of candies along a path over the true object and count them (Sec. IV-D).
 
@@ -157,14 +151,10 @@ def simulate_outcome(
     T_given_stood = _stood(mesh, settings)
     stood = TriangleMesh(transform_points(T_given_stood, mesh.vertices_m), mesh.faces)
     since_start = DrivenPath(path.times_s - path.times_s[0], path.T_base_cup)
-    motion = cup_motion(since_start.without_standing().in_hand(_slipped(settings)), settings.rate_hz)
-    # Bullet's skin makes walls thicker: this much further out, the cup is as wide inside as it should be.
-    parts = cup_parts(cup.model_copy(update={"mouth_radius_m": cup.mouth_radius_m + _WALL_SKIN_M}))
-    with body_files(object=([stood], True), cup=(parts, False)) as files:
-        aabb_m = np.array([stood.aabb_min_m, stood.aabb_max_m])
-        bodies = Bodies(files["object"], aabb_m, files["cup"], cup, table_height_m, platform)
-        task = pour_task(bodies, candies, lying.moved(T_given_stood), motion, settings)
-        played: PlayedPour = pool.run([task], "outcome", reporter)[0]
+    motion = cup_motion(since_start.trimmed().in_hand(_slipped(settings)), settings.rate_hz)
+    bodies = Bodies(stood, cup, table_height_m, platform)
+    task = pour_task(bodies, candies, lying.moved(T_given_stood), motion, settings)
+    played: PlayedPour = pool.run([task], "outcome", reporter)[0]
     lie_in = in_object(
         stood,
         played.positions_m,
@@ -178,7 +168,7 @@ def simulate_outcome(
 
 
 def _stood(mesh: TriangleMesh, settings: OutcomeSettings) -> FloatArray:
-    """`T_given_stood` (4, 4): shifted in the plane and turned about the vertical through its middle."""
+    """`T_given_stood` (4, 4): shifted in the plane and rotated about the vertical through its middle."""
     random = np.random.default_rng([settings.seed, 2])
     direction, sense = random.uniform(0, 2 * np.pi), random.choice([-1.0, 1.0])
     middle = (mesh.aabb_min_m + mesh.aabb_max_m) / 2
@@ -197,3 +187,68 @@ def _slipped(settings: OutcomeSettings) -> FloatArray:
     return make_pose(
         Rotation.from_rotvec(lean).as_matrix(), settings.cup_slip_m * shift / np.linalg.norm(shift)
     )
+
+
+_FLAT_M2 = 1e-12
+"""Twice the area, seen from above, below which a face is upright and carries nothing."""
+_SAMPLES = np.array(
+    [
+        (0.0, 0.0, 0.0),
+        *((0.8 * np.cos(angle), 0.8 * np.sin(angle), 0.0) for angle in np.arange(8) * np.pi / 4),
+    ]
+)
+"""Points of a candy seen from above, in radii."""
+
+
+def in_object(
+    mesh: TriangleMesh,
+    positions_m: FloatArray,
+    platform_height_m: float,
+    rim_margin_m: float,
+    candy_radius_m: float,
+) -> BoolArray:
+    """Return (N,) which of the candies at rest at (N, 3) are in the object.
+
+    In it are those within the AABB's outline, above the platform, no higher than `rim_margin_m` above the
+    AABB, and with the object's own surface somewhere beneath most of them: a candy on the platform beside a
+    round bowl, in a corner of its AABB, was spilled, and so was one inside a ring that has no floor. One that
+    lies over a crack narrower than itself was not.
+
+    Args:
+        mesh: the object as it stood, in the base frame.
+        positions_m: the candies' centres.
+        platform_height_m: top of the platform.
+        rim_margin_m: for heaps.
+        candy_radius_m: how far a candy reaches from its centre.
+    """
+    low, high = mesh.aabb_min_m, mesh.aabb_max_m
+    height = positions_m[:, 2]
+    inside: BoolArray = (
+        ((positions_m[:, :2] > low[:2]) & (positions_m[:, :2] < high[:2])).all(axis=1)
+        & (height > platform_height_m)
+        & (height < high[2] + rim_margin_m)
+    )
+    for candy in np.flatnonzero(inside).tolist():
+        beneath = [_surface_beneath(mesh, positions_m[candy] + shift) for shift in candy_radius_m * _SAMPLES]
+        inside[candy] = 2 * sum(beneath) > len(beneath)
+    return inside
+
+
+def _surface_beneath(mesh: TriangleMesh, point_m: FloatArray) -> bool:
+    """Whether a plumb line from a point (3,) meets the surface."""
+    a, b, c = (mesh.vertices_m[mesh.faces[:, k]] for k in range(3))
+    of_c = _signed_area_m2(a, b, point_m)
+    of_a = _signed_area_m2(b, c, point_m)
+    of_b = _signed_area_m2(c, a, point_m)
+    area = of_a + of_b + of_c
+    covers = ((of_a >= 0) & (of_b >= 0) & (of_c >= 0)) | ((of_a <= 0) & (of_b <= 0) & (of_c <= 0))
+    covers &= np.abs(area) > _FLAT_M2
+    weighted = of_a * a[:, 2] + of_b * b[:, 2] + of_c * c[:, 2]
+    return bool((weighted[covers] / area[covers] < point_m[2]).any())
+
+
+def _signed_area_m2(start_m: FloatArray, end_m: FloatArray, point_m: FloatArray) -> FloatArray:
+    """Twice the signed area (F,) of the triangles start, end, point, seen from above."""
+    along, towards = end_m - start_m, point_m - start_m
+    area: FloatArray = along[:, 0] * towards[:, 1] - along[:, 1] * towards[:, 0]
+    return area

@@ -9,16 +9,16 @@ import numpy as np
 from core.geometry import BoolArray, FloatArray, invert_pose, transform_points
 from core.imagination.cup import inner_radius_m
 from core.imagination.recording import Recorder, Recording
-from core.parameters.imagination import CupParameters
+from core.parameters.bodies import CupParameters
 from core.workers import Task, report_fraction
+from hardware.simulation.pour_outcome.bodies import Bodies
 from hardware.simulation.pour_outcome.candies import Candies
 from hardware.simulation.pour_outcome.driven_path import CupMotion
-from hardware.simulation.pour_outcome.lying import LyingCandies
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
-from hardware.simulation.pour_outcome.table_world import Bodies, TableWorld
+from hardware.simulation.pour_outcome.table import Table, open_table
 
-_LOOK_STEPS = 12
-"""Steps between two looks at whether all is over, and between two reports."""
+_CHECK_STEPS = 12
+"""Steps between two checks whether all is over, and between two reports."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class PlayedPour:
 
 
 def pour_task(
-    bodies: Bodies, candies: Candies, lying: LyingCandies, motion: CupMotion, settings: OutcomeSettings
+    bodies: Bodies, candies: Candies, lying: Candies, motion: CupMotion, settings: OutcomeSettings
 ) -> Task:
     """Return the task whose result is the `PlayedPour` of the cup's candies and those lying in the object."""
     return Task(_play, (bodies, candies, lying, motion, settings))
@@ -50,9 +50,9 @@ def inside_cup(cup: CupParameters, T_base_cup: FloatArray, positions_m: FloatArr
 
 
 def _play(
-    bodies: Bodies, candies: Candies, lying: LyingCandies, motion: CupMotion, settings: OutcomeSettings
+    bodies: Bodies, candies: Candies, lying: Candies, motion: CupMotion, settings: OutcomeSettings
 ) -> PlayedPour:
-    with TableWorld(bodies, settings) as world:
+    with open_table(bodies, settings) as world:
         pour = _Pour(world, bodies.cup, motion, settings, len(candies.scales) + len(lying.scales))
         pour.settle(candies, lying)
         pour.follow()
@@ -66,7 +66,7 @@ class _Pour:
 
     def __init__(
         self,
-        world: TableWorld,
+        world: Table,
         cup: CupParameters,
         motion: CupMotion,
         settings: OutcomeSettings,
@@ -81,23 +81,23 @@ class _Pour:
         self._rest_steps = round(settings.rest_s * settings.rate_hz)
         self.recorder = Recorder(n_candies)
 
-    def settle(self, candies: Candies, lying: LyingCandies) -> None:
+    def settle(self, candies: Candies, lying: Candies) -> None:
         """Fill the standing cup and let the candies come to rest; others lie in the object."""
-        self._world.add_candies(candies, self._motion.T_base_cup[self._at], self._motion.quaternions[0])
-        self._world.add_lying(lying)
+        self._world.add_candies(candies.moved(self._motion.T_base_cup[self._at]))
+        self._world.add_candies(lying)
         for _ in range(round(self._settings.settle_s * self._settings.rate_hz)):
             self._drive(moving=False)
             self._world.step()
 
     def follow(self) -> None:
-        """Drive the cup along its path; once nothing can move any more, only the cup's way is recorded."""
+        """Drive the cup along its path; once nothing can move any more, only the cup's path is recorded."""
         last = len(self._motion.times_s) - 1
         is_over = False
         for step in range(last):
             self._at = step
             if step % self._record_steps == 0:
                 self._record(0)
-            if step % _LOOK_STEPS == 0:
+            if step % _CHECK_STEPS == 0:
                 report_fraction(step / (last + self._rest_steps))
                 is_over = is_over or (
                     self._is_at_rest() and not self.in_cup(self._world.poses()[:, :3]).any()
@@ -110,7 +110,7 @@ class _Pour:
     def wait(self) -> None:
         """Wait until all candies are at rest, at most `rest_s`."""
         waited = 0
-        while waited < self._rest_steps and not (waited % _LOOK_STEPS == 0 and self._is_at_rest()):
+        while waited < self._rest_steps and not (waited % _CHECK_STEPS == 0 and self._is_at_rest()):
             if waited % self._record_steps == 0:
                 self._record(waited)
             self._drive(moving=False)

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry import FloatArray
+from core.geometry import FloatArray, invert_pose
 from core.motion.arm_models import ArmModel
-from core.motion.kinematics import flange_pose, jacobian
-from hardware.simulation.ur_controller.courses import Braking, Course
-from hardware.simulation.ur_controller.motions import CourseMotion, Motion, ServoMotion, SpeedMotion
-from hardware.simulation.ur_controller.poses import vector_from_pose
+from core.motion.kinematics import configurations, flange_pose, jacobian, nearest_turn, within_limits
+from hardware.robots.ur.pose_vectors import pose_from_vector, vector_from_pose
+from hardware.simulation.ur_controller.motions import (
+    Braking,
+    Motion,
+    NoSolution,
+    PlannedMotion,
+    ServoMotion,
+    SpeedMotion,
+    Trajectory,
+)
 
 STOP_RAD_S2 = 10.0
 """How hard the controller brakes when a program or the power ends: from full speed in 0.3 s."""
 _PACE_PER_S = 5.0
-"""How fast a pause, a protective stop or the slider changes the pace: to a stand in 0.2 s."""
+"""How fast a pause, a protective stop or the slider changes the pace: to rest in 0.2 s."""
 _MOVING_RAD_S = 1e-4
 
 
@@ -36,7 +43,7 @@ class Arm:
     """
 
     def __init__(self, model: ArmModel, joints_rad: npt.ArrayLike) -> None:
-        """Stand."""
+        """Begin at rest."""
         self.model = model
         self.joints_rad = self.target_rad = np.array(joints_rad, dtype=float)
         self.speeds_rad_s = self.target_speeds_rad_s = np.zeros(6)
@@ -48,7 +55,7 @@ class Arm:
         self.stuck: set[int] = set()
         self._pace = 1.0
         self._motion: Motion | None = None
-        self._next: Callable[[FloatArray], Course] | None = None
+        self._next: Callable[[FloatArray], Trajectory] | None = None
 
     @property
     def is_idle(self) -> bool:
@@ -61,24 +68,24 @@ class Arm:
         return bool(np.abs(self.target_speeds_rad_s).max() > _MOVING_RAD_S)
 
     @property
-    def stands_held(self) -> bool:
-        """Whether a pause has brought it to a stand."""
+    def is_paused(self) -> bool:
+        """Whether a pause has brought it to rest."""
         return self.is_held and not self.is_moving
 
     @property
-    def course_time_s(self) -> float:
-        """How long the present course has run, in the program's own time; 0 where there is none."""
-        if isinstance(self._motion, CourseMotion) and self._next is None:
+    def planned_time_s(self) -> float:
+        """How long the present trajectory has run, in the program's own time; 0 where there is none."""
+        if isinstance(self._motion, PlannedMotion) and self._next is None:
             return self._motion.time_s
         return 0.0
 
-    def run(self, make: Callable[[FloatArray], Course]) -> None:
-        """Begin a course from rest, made for the joints (6,) where it begins; brake first if need be."""
+    def run(self, make: Callable[[FloatArray], Trajectory]) -> None:
+        """Begin a trajectory from rest, made for the joints (6,) where it begins; brake first if need be."""
         if self.is_moving:
             self.brake(STOP_RAD_S2)
             self._next = make
         else:
-            self._motion, self._next = CourseMotion(make(self.target_rad)), None
+            self._motion, self._next = PlannedMotion(make(self.target_rad)), None
 
     def servo(self) -> ServoMotion:
         """Return the servo motion, begun if another one was going on."""
@@ -96,7 +103,7 @@ class Arm:
         """Stop what is going on, whatever the pace."""
         self._next = None
         braking = Braking(self.target_rad, self.target_speeds_rad_s, max(deceleration_rad_s2, 0.01))
-        self._motion = CourseMotion(braking, is_paced=False)
+        self._motion = PlannedMotion(braking, is_paced=False)
 
     def brake_tool(self, deceleration_m_s2: float) -> None:
         """Stop so that the tool slows down with a deceleration."""
@@ -117,15 +124,37 @@ class Arm:
             if self._motion.is_done:
                 self._motion = None
         elif self._next is not None and not self.is_held:
-            self._motion, self._next = CourseMotion(self._next(self.target_rad)), None
+            self._motion, self._next = PlannedMotion(self._next(self.target_rad)), None
         self._follow(dt_s)
 
     def tcp_pose(self, joints_rad: FloatArray) -> FloatArray:
         """Return UR's pose vector (6,) of the tool."""
         return vector_from_pose(flange_pose(self.model, joints_rad) @ self.T_flange_tcp)
 
+    def solve(self, pose: Sequence[float], near_rad: FloatArray) -> FloatArray:
+        """Return the configuration (6,) nearest to another that brings the tool to a pose vector.
+
+        Raises:
+            NoSolution: out of reach, or exactly singular.
+        """
+        found = configurations(self.model, pose_from_vector(pose) @ invert_pose(self.T_flange_tcp))
+        found = nearest_turn(self.model, found, near_rad)
+        found = found[within_limits(self.model, found).all(axis=-1)]
+        if not len(found):
+            raise NoSolution("inverse kinematics: unable to find a solution")
+        nearest: FloatArray = found[np.abs(found - near_rad).sum(axis=-1).argmin()]
+        return nearest
+
+    def has_solution(self, pose: Sequence[float], near_rad: FloatArray) -> bool:
+        """Whether `solve` would find one."""
+        try:
+            self.solve(pose, near_rad)
+        except NoSolution:
+            return False
+        return True
+
     def tcp_speed(self, joints_rad: FloatArray, speeds_rad_s: FloatArray) -> FloatArray:
-        """Return the tool's velocity and turning (6,) in the base frame, m/s and rad/s."""
+        """Return the tool's linear and angular velocity (6,) in the base frame, m/s and rad/s."""
         if not speeds_rad_s.any():
             return np.zeros(6)
         speed: FloatArray = jacobian(self.model, joints_rad) @ speeds_rad_s

@@ -9,9 +9,9 @@ import numpy.typing as npt
 from core.motion.arm_models import ArmModel
 from hardware.modes import RobotMode, SafetyMode
 from hardware.simulation.ur_controller.arm import STOP_RAD_S2, Arm
-from hardware.simulation.ur_controller.courses import NoSolution
 from hardware.simulation.ur_controller.identity import Identity
 from hardware.simulation.ur_controller.journal import Journal
+from hardware.simulation.ur_controller.motions import NoSolution
 from hardware.simulation.ur_controller.program import ControlProgram
 from hardware.simulation.ur_controller.registers import Registers
 
@@ -42,7 +42,7 @@ class Controller:
         arm: the arm.
         registers: what clients and the program write.
         journal: what happened.
-        robot_mode, safety_mode, runtime_state: as RTDE tells them.
+        robot_mode, safety_mode, runtime_state: as RTDE reports them.
         is_remote: whether it is in remote control (e-Series; always so on a CB3).
         ignores_uploads: a fault: scripts come and nothing happens.
         digital_outputs: bits; 16 and 17 are the tool's.
@@ -96,7 +96,7 @@ class Controller:
             self._program = ControlProgram(
                 script, self.arm, self.registers, self.journal, self.protective_stop
             )
-            self._set_held(False)
+            self.arm.is_held = False
             self.runtime_state = RuntimeState.PLAYING
 
     def stop(self) -> bool:
@@ -106,10 +106,10 @@ class Controller:
         return had_one
 
     def pause(self) -> bool:
-        """Bring the program to a stand; False if it does not run."""
+        """Pause the program; False if it does not run."""
         if self.runtime_state not in (RuntimeState.PLAYING, RuntimeState.RESUMING):
             return False
-        self._set_held(True)
+        self.arm.is_held = True
         self.runtime_state = RuntimeState.PAUSING
         return True
 
@@ -118,18 +118,18 @@ class Controller:
         may = self.safety_mode.may_move and self.robot_mode is RobotMode.RUNNING
         if not may or self.runtime_state not in (RuntimeState.PAUSING, RuntimeState.PAUSED):
             return False
-        self._set_held(False)
+        self.arm.is_held = False
         self.runtime_state = RuntimeState.RESUMING
         return True
 
     def protective_stop(self) -> None:
-        """Stop on the way and hold; the program is paused."""
+        """Stop the motion and hold; the program is paused."""
         if self.safety_mode.may_move:
             self.safety_mode = SafetyMode.PROTECTIVE_STOP
             self._stopped_at_s = self.time_s
             self.journal.note("protective stop")
             if not self.pause():
-                self._set_held(True)
+                self.arm.is_held = True
 
     def unlock_protective_stop(self) -> bool:
         """End a protective stop; False within 5 s of it. The program stays paused."""
@@ -139,7 +139,7 @@ class Controller:
             return False
         self.safety_mode = SafetyMode.NORMAL
         if self._program is None:
-            self._set_held(False)
+            self.arm.is_held = False
         return True
 
     def emergency_stop(self) -> None:
@@ -166,7 +166,7 @@ class Controller:
     def power_off(self) -> None:
         """Brake, end the program, and take the power from the arm."""
         self._end_program()
-        self._set_held(False)
+        self.arm.is_held = False
         self.arm.brake(STOP_RAD_S2)
         self._switching = [(0.0, RobotMode.POWER_OFF)]
 
@@ -196,17 +196,14 @@ class Controller:
             return
         self._program = None
         self.journal.note("end of program")
-        self._set_held(False)
+        self.arm.is_held = False
         self.arm.brake(STOP_RAD_S2)
         self.runtime_state = RuntimeState.STOPPING
-
-    def _set_held(self, is_held: bool) -> None:
-        self.arm.is_held = is_held
 
     def _advance_runtime(self) -> None:
         if self.runtime_state is RuntimeState.STOPPING and not self.arm.is_moving:
             self.runtime_state = RuntimeState.STOPPED
-        elif self.runtime_state is RuntimeState.PAUSING and self.arm.stands_held:
+        elif self.runtime_state is RuntimeState.PAUSING and self.arm.is_paused:
             self.runtime_state = RuntimeState.PAUSED
         elif self.runtime_state is RuntimeState.RESUMING:
             self.runtime_state = RuntimeState.PLAYING

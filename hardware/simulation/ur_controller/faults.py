@@ -43,7 +43,7 @@ class FaultRefused(Exception):
     """The line is no command; the text says why."""
 
 
-class FaultDesk:
+class FaultInjector:
     """Takes one line, does it, and returns one line.
 
     Times are in seconds of the wall clock: links are.
@@ -99,7 +99,7 @@ class FaultDesk:
         self._find(words)()
         return "ok"
 
-    def look(self) -> None:
+    def poll(self) -> None:
         """Called in every cycle: do what waits for a movement."""
         if self._when_moving and self._controller.arm.is_moving:
             due, self._when_moving = self._when_moving, []

@@ -1,4 +1,4 @@
-"""Which controller is simulated."""
+"""Which controller is simulated, and where it listens."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _REMOTE_CONTROL_SINCE = (5, 6)
 
 @dataclass(frozen=True)
 class Identity:
-    """What the controller says that it is.
+    """What the controller reports itself to be.
 
     Attributes:
         model: of the arm.
@@ -36,12 +36,12 @@ class Identity:
 
     @property
     def knows_remote_control(self) -> bool:
-        """Whether it tells local from remote control."""
+        """Whether it distinguishes local from remote control."""
         return self.version >= _REMOTE_CONTROL_SINCE
 
     @property
     def version_text(self) -> str:
-        """As the dashboard says it."""
+        """As the dashboard reports it."""
         major, minor = self.version
         number = f"{major}.{minor}.0.0"
         return f"URSoftware {number} (Jan 01 2024)" if self.is_e_series else number
@@ -51,11 +51,21 @@ def identity(model: str, version: str) -> Identity:
     """Return the identity of a model ("UR5", "UR5e") and a PolyScope version ("3.15", "5.11").
 
     Raises:
-        InputError: an unknown model, or a version that is none.
+        InputError: an unknown model, or a version that is not one.
     """
     if model not in MODELS:
         raise InputError(f"There is no arm '{model}' to simulate; choose one of {', '.join(MODELS)}.")
     parts = version.split(".")
     if len(parts) < 2 or not all(part.isdigit() for part in parts):
-        raise InputError(f"'{version}' is no version of PolyScope; write for example 3.15 or 5.11.")
+        raise InputError(f"'{version}' is not a version of PolyScope; write for example 3.15 or 5.11.")
     return Identity(MODELS[model], (int(parts[0]), int(parts[1])))
+
+
+"""Where the controller listens, and where its arm is at first."""
+
+DASHBOARD_PORT = 29999
+SCRIPT_PORT = 30003
+RTDE_PORT = 30004
+CONTROL_PORT = 30099
+"""The first three are a real controller's; the last takes faults and questions."""
+HOME_RAD = (0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0)

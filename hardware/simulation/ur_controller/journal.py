@@ -22,11 +22,11 @@ class Journal:
         self._now_s = 0.0
 
     def set_time(self, controller_s: float) -> None:
-        """Tell the controller's time, which the entries carry."""
+        """Set the controller's time, which the entries carry."""
         self._now_s = controller_s
 
     def note(self, what: str, **details: Any) -> None:
-        """Count something and keep it with its details."""
+        """Count something and record it with its details."""
         self.counts[what] += 1
         self._entries.append({"time_s": round(self._now_s, 4), "what": what, **details})
 

@@ -1,4 +1,4 @@
-"""Connections, and what can go wrong with them: silence, delay, loss, refusal."""
+"""Connections of clients, and what can go wrong with them: silence, delay, loss, refusal."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Link(asyncio.Protocol):
         self._journal = journal
         self._transport: asyncio.Transport | None = None
         self._held: list[bytes] = []
-        self._ways = {"in": _Way(), "out": _Way()}
+        self._directions = {"in": _Direction(), "out": _Direction()}
         self._waiting_bytes = 0
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -123,7 +123,7 @@ class Link(asyncio.Protocol):
         self._waiting_bytes = 0
 
     def abort(self) -> None:
-        """Close the connection without a word."""
+        """Close the connection without a message."""
         if self._transport is not None:
             self._transport.abort()
 
@@ -156,11 +156,11 @@ class Link(asyncio.Protocol):
 
     def _later(self, direction: str, action: Callable[[], None]) -> None:
         """Do it after the network's delay, never before what was to be done earlier."""
-        self._ways[direction].do(action, self._network.delay_s())
+        self._directions[direction].do(action, self._network.delay_s())
 
 
-class _Way:
-    """One direction of a connection: what is on its way, in its order."""
+class _Direction:
+    """One direction of a connection: what is in flight, in its order."""
 
     def __init__(self) -> None:
         self._actions: deque[Callable[[], None]] = deque()
@@ -175,3 +175,28 @@ class _Way:
         self._actions.append(action)
         # Timers of one moment come in any order, so each does whatever is first by now.
         loop.call_at(self._due_s, lambda: self._actions.popleft()())
+
+
+_MAX_LINE_BYTES = 1 << 16
+
+
+class LineLink(Link):
+    """One client that sends lines; subclasses say what each means."""
+
+    _rest = b""
+
+    def received(self, data: bytes) -> None:
+        """Cut into lines."""
+        *lines, self._rest = (self._rest + data).split(b"\n")
+        for line in lines:
+            self.line_received(line.decode("utf-8", errors="replace").strip())
+        if len(self._rest) > _MAX_LINE_BYTES:
+            self.abort()
+
+    def line_received(self, line: str) -> None:
+        """What to do with a line, without its end."""
+        raise NotImplementedError
+
+    def send_line(self, line: str) -> None:
+        """Send a line of text."""
+        self.send(line.encode() + b"\n")

@@ -1,4 +1,4 @@
-"""The moves that `movePath` puts into the control script, and the course that they make."""
+"""The moves that `movePath` puts into the control script, and the trajectory that they make."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from core.geometry import FloatArray, invert_pose
 from core.motion.arm_models import ArmModel
 from core.motion.kinematics import flange_pose
 from hardware.robots.joint_motion import JointMotion
-from hardware.simulation.ur_controller.courses import Course, StraightLine
-from hardware.simulation.ur_controller.poses import pose_from_vector
+from hardware.robots.ur.pose_vectors import pose_from_vector
+from hardware.simulation.ur_controller.motions import StraightLine, Trajectory
 
 _MOVE = re.compile(r"^\s*(movej|movel|movep)\((p?)\[([^\]]*)\]([^)]*)\)", re.MULTILINE)
 _MARKER = "# inject move path"
@@ -57,7 +57,7 @@ def _parse(command: str, pose_mark: str, numbers: str, options: str) -> PathMove
 class BlendedPath:
     """Moves in a row; where a blend is allowed, the next begins while the last one slows down.
 
-    In a blend both displacements add up, so the joints pass the corner within its radius without standing.
+    In a blend both displacements add up, so the joints pass the corner within its radius without stopping.
 
     Attributes:
         duration_s: from rest to rest.
@@ -67,7 +67,7 @@ class BlendedPath:
     def __init__(
         self,
         position: Callable[[FloatArray], FloatArray],
-        pieces: Sequence[Course],
+        pieces: Sequence[Trajectory],
         corners_rad: FloatArray,
         blends_m: Sequence[float],
     ) -> None:
@@ -99,8 +99,8 @@ class BlendedPath:
 
 def _overlap(
     position: Callable[[FloatArray], FloatArray],
-    before: Course,
-    after: Course,
+    before: Trajectory,
+    after: Trajectory,
     corner_rad: FloatArray,
     blend_m: float,
 ) -> float:
@@ -123,7 +123,7 @@ def _overlap(
     return low_s
 
 
-def path_course(
+def plan_path(
     arm: ArmModel, T_flange_tcp: FloatArray, moves: Sequence[PathMove], start_rad: FloatArray
 ) -> BlendedPath:
     """Plan the moves from a configuration on.
@@ -131,7 +131,7 @@ def path_course(
     Raises:
         NoSolution: one of them is out of reach.
     """
-    pieces: list[Course] = []
+    pieces: list[Trajectory] = []
     corners = [start_rad]
     for move in moves:
         speed, acceleration = max(move.speed, 1e-3), max(move.acceleration, 1e-3)

@@ -5,23 +5,23 @@ Never in the client's process: ur_rtde's constructors hold the interpreter while
 
 from __future__ import annotations
 
-import json
-import os
-import select
+import asyncio
 import socket
-import subprocess
-import sys
 from collections.abc import Sequence
-from pathlib import Path
+from multiprocessing.connection import Connection
 from threading import Lock
 
+from core.child_process import ChildProcess
+from core.errors import PoursightError
 from hardware.errors import RobotError
-from hardware.simulation.ur_controller.addresses import CONTROL_PORT, HOME_RAD
+from hardware.realtime import take_precedence
+from hardware.simulation.ur_controller.identity import CONTROL_PORT, HOME_RAD, identity
+from hardware.simulation.ur_controller.server import ControllerServer, ControllerSettings
 
-_ROOT = Path(__file__).resolve().parents[3]
 _START_S = 15.0
 _ANSWER_S = 5.0
 _REFUSED = "error: "
+_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 class ControllerProcess:
@@ -46,20 +46,18 @@ class ControllerProcess:
             model: "UR5" or "UR5e".
             version: of PolyScope; 3.x runs at 125 Hz, 5.x at 500 Hz.
             address: on loopback; without one, any 127.x.y.z that is free.
-            joints_rad: (6,) where the arm stands at first, powered on and with its brakes released.
+            joints_rad: (6,) where the arm is at first, powered on and with its brakes released.
             speed_up: how many times faster than the wall clock its clock, motion and cycles run.
             faults: lines as for `command`, taken at the start.
+
+        Raises:
+            InputError: an unknown model, or a version that is none.
         """
         self.address = address or ""
-        self._wish = {
-            "model": model,
-            "version": version,
-            "address": address,
-            "joints_rad": [float(angle) for angle in joints_rad],
-            "speed_up": speed_up,
-            "faults": list(faults),
-        }
-        self._process: subprocess.Popen[bytes] | None = None
+        self._settings = ControllerSettings(
+            identity(model, version), address, tuple(joints_rad), speed_up, tuple(faults)
+        )
+        self._process: ChildProcess | None = None
         self._socket: socket.socket | None = None
         self._rest = b""
         self._lock = Lock()
@@ -70,28 +68,25 @@ class ControllerProcess:
         Raises:
             RobotError: it did not start; the sentence says why.
         """
-        paths = os.pathsep.join([str(_ROOT), *filter(None, [os.environ.get("PYTHONPATH")])])
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", __package__, json.dumps(self._wish)],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env=os.environ | {"PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
-        )
+        self._process = ChildProcess(_serve, self._settings, name="ur controller", environment=_ONE_THREAD)
         try:
-            word, _, rest = self._first_line().partition(" ")
-            if word != "listens":
-                raise RobotError(rest or "The simulated controller did not start.")
-            self.address = rest
+            self.address = _address(self._process.connection)
             self._socket = socket.create_connection((self.address, CONTROL_PORT), _ANSWER_S)
-        except (OSError, RobotError) as error:
+        except OSError as error:
             self.kill()
-            if isinstance(error, RobotError):
-                raise
             raise RobotError(f"The simulated controller cannot be reached ({error}).") from error
+        except BaseException:
+            self.kill()
+            raise
         return self
 
     def __exit__(self, *exception: object) -> None:
         self.kill()
+
+    @property
+    def pid(self) -> int | None:
+        """Of its process, while it runs."""
+        return self._process.pid if self._process is not None else None
 
     def command(self, line: str) -> str:
         """Send one line to the control socket and return the one line that it answers.
@@ -119,14 +114,8 @@ class ControllerProcess:
             self._socket.close()
             self._socket = None
         if self._process is not None:
-            self._process.kill()
-            self._process.communicate()
+            self._process.end()
             self._process = None
-
-    def _first_line(self) -> str:
-        assert self._process is not None and self._process.stdout is not None
-        ready, _, _ = select.select([self._process.stdout], [], [], _START_S)
-        return self._process.stdout.readline().decode().strip() if ready else ""
 
     def _receive_line(self) -> str:
         assert self._socket is not None
@@ -137,3 +126,23 @@ class ControllerProcess:
             self._rest += data
         line, _, self._rest = self._rest.partition(b"\n")
         return line.decode()
+
+
+def _serve(connection: Connection, settings: ControllerSettings) -> None:
+    """In the new process: send the address once everything listens, or why nothing does."""
+    take_precedence()  # a controller is a computer of its own: what else runs here must not slow it down
+    try:
+        asyncio.run(ControllerServer(settings).run(connection.send))
+    except PoursightError as error:
+        connection.send(error)
+
+
+def _address(connection: Connection) -> str:
+    """What the new process sends first."""
+    try:
+        answer = connection.recv() if connection.poll(_START_S) else None
+    except EOFError:
+        answer = None
+    if not isinstance(answer, str):
+        raise RobotError("The simulated controller did not start." if answer is None else str(answer))
+    return answer

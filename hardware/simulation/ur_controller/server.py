@@ -10,22 +10,19 @@ from dataclasses import dataclass
 from ipaddress import ip_address
 
 from core.errors import InputError
-from hardware.simulation.ur_controller.addresses import (
+from hardware.simulation.ur_controller.controller import Controller
+from hardware.simulation.ur_controller.faults import FaultInjector, FaultRefused
+from hardware.simulation.ur_controller.identity import (
     CONTROL_PORT,
     DASHBOARD_PORT,
     HOME_RAD,
     RTDE_PORT,
     SCRIPT_PORT,
+    Identity,
 )
-from hardware.simulation.ur_controller.control_socket import ControlLink
-from hardware.simulation.ur_controller.controller import Controller
-from hardware.simulation.ur_controller.dashboard import DashboardLink
-from hardware.simulation.ur_controller.faults import FaultDesk, FaultRefused
-from hardware.simulation.ur_controller.identity import Identity
 from hardware.simulation.ur_controller.link import Network
-from hardware.simulation.ur_controller.outputs import Outputs
-from hardware.simulation.ur_controller.rtde_server import RtdeLink
-from hardware.simulation.ur_controller.script_server import ScriptLink
+from hardware.simulation.ur_controller.rtde_server import Outputs, RtdeLink
+from hardware.simulation.ur_controller.text_servers import ControlLink, DashboardLink, ScriptLink
 
 _ADDRESS_TRIES = 50
 _LATE_S = 0.02
@@ -34,15 +31,15 @@ _STOOD_STILL_S = 0.1
 
 
 @dataclass(frozen=True)
-class Wish:
+class ControllerSettings:
     """What shall be simulated.
 
     Attributes:
         identity: model and version.
         address: on loopback; none: any 127.x.y.z that is free.
-        joints_rad: (6,) where the arm stands at first.
+        joints_rad: (6,) where the arm is at first.
         speed_up: how many times faster than the wall clock the controller's clock runs.
-        faults: lines for the fault desk, taken at the start.
+        faults: lines for the fault injector, taken at the start.
     """
 
     identity: Identity
@@ -55,27 +52,27 @@ class Wish:
 class ControllerServer:
     """A controller with its servers, in an asyncio loop."""
 
-    def __init__(self, wish: Wish) -> None:
+    def __init__(self, settings: ControllerSettings) -> None:
         """Prepare; nothing listens yet."""
-        self._wish = wish
-        self._controller = Controller(wish.identity, wish.joints_rad)
+        self._settings = settings
+        self._controller = Controller(settings.identity, settings.joints_rad)
         self._outputs = Outputs(self._controller)
         self._network = Network()
-        self._desk = FaultDesk(self._controller, self._network, self._refuse)
+        self._injector = FaultInjector(self._controller, self._network, self._refuse)
         self._servers: list[asyncio.Server] = []
         self._tasks: set[asyncio.Task[None]] = set()
         self._address = ""
 
     async def run(self, listens: Callable[[str], None]) -> None:
-        """Serve until cancelled; tell the address once everything listens.
+        """Serve until cancelled; report the address once everything listens.
 
         Raises:
-            InputError: the address cannot be used, or a fault's line is none.
+            InputError: the address cannot be used, or a fault line is not one.
         """
         control = await self._listen_somewhere()
         try:
-            for line in self._wish.faults:
-                self._desk.take(line)
+            for line in self._settings.faults:
+                self._injector.take(line)
             listens(self._address)
             await self._cycle()
         except FaultRefused as error:
@@ -87,7 +84,7 @@ class ControllerServer:
             self._network.drop()
 
     async def _listen_somewhere(self) -> asyncio.Server:
-        wanted = self._wish.address
+        wanted = self._settings.address
         if wanted and not _is_loopback(wanted):
             raise InputError(
                 f"A simulated controller listens on loopback only; choose 127.x.y.z, not {wanted}."
@@ -97,7 +94,7 @@ class ControllerServer:
             self._address = wanted or ".".join(["127", *(str(pick.randint(1, 254)) for _ in range(3))])
             try:
                 control = await self._server(
-                    lambda: ControlLink(self._desk, self._controller.journal), CONTROL_PORT
+                    lambda: ControlLink(self._injector, self._controller.journal), CONTROL_PORT
                 )
             except OSError:
                 continue
@@ -143,9 +140,9 @@ class ControllerServer:
             task.add_done_callback(self._tasks.discard)
 
     async def _cycle(self) -> None:
-        """Keep the controller's clock with the wall clock, several cycles at once where a wake-up is late."""
+        """Step the controller by the wall clock, several cycles at once where a wake-up is late."""
         loop = asyncio.get_running_loop()
-        period_s = self._controller.dt_s / self._wish.speed_up
+        period_s = self._controller.dt_s / self._settings.speed_up
         begin_s, done = loop.time(), 0
         while True:
             due = int((loop.time() - begin_s) / period_s) - done
@@ -157,7 +154,7 @@ class ControllerServer:
                 await asyncio.sleep(0)
             for _ in range(due):
                 self._controller.step()
-                self._desk.look()
+                self._injector.poll()
             if due > 0:
                 done += due
                 self._send_state(due)

@@ -1,19 +1,19 @@
-"""A host process works, tells, cancels, survives faults, and is missed when it dies."""
+"""A host process works, reports, cancels, survives faults, and is missed when it dies."""
 
 from __future__ import annotations
 
 import os
-import queue
 import signal
 import time
 
 import psutil
 import pytest
 
-from app.jobs.host import Host
-from app.jobs.messages import Failed, FailureKind, Finished, News, Progressed, Warned
+from app.jobs.messages import Event, FailureKind, Finished, Progressed, Warned
 from app.jobs.service import Service
 from core.errors import InputError
+from tests.app.jobs.hosts import ListenedHost
+from tests.awake import AwakeClock
 
 
 class _Counting(Service):
@@ -22,107 +22,87 @@ class _Counting(Service):
     count = 0
     noted = ""
 
-    def add(self, face, number):
+    def add(self, reporter, number):
         self.count += number
-        face.progress("adding", 1, 2)
-        face.warn("Careful.")
-        face.tell(("added", number))
+        reporter.progress("adding", 1, 2)
+        reporter.warn("Careful.")
+        reporter.publish(("added", number))
         return self.count
 
-    def fail(self, face):
+    def fail(self, reporter):
         raise InputError("There is no such thing; look elsewhere.")
 
-    def crash(self, face):
+    def crash(self, reporter):
         raise ZeroDivisionError("by accident")
 
-    def die(self, face):
+    def die(self, reporter):
         os.kill(os.getpid(), signal.SIGKILL)
 
-    def wait(self, face):
+    def wait(self, reporter):
         while True:
-            face.raise_if_cancelled()
+            reporter.raise_if_cancelled()
             time.sleep(0.01)
 
-    def hang(self, face):
+    def hang(self, reporter):
+        reporter.publish("hangs")
         time.sleep(60)
 
     def note(self, word):
-        self._tell(News(word))
+        self._send(Event(word))
 
 
 @pytest.fixture
-def heard():
-    return queue.Queue()
+def counting():
+    counting = ListenedHost(_Counting, "counts")
+    counting.host.open()
+    yield counting
+    counting.host.close()
 
 
-@pytest.fixture
-def host(heard):
-    host = Host(_Counting, "counts", heard.put)
-    host.open()
-    yield host
-    host.close()
+def test_a_job_reports_its_progress_and_its_service_remembers(counting):
+    assert counting.do(_Counting.add, 2) == 2
+    assert [type(message) for message in counting.messages] == [Progressed, Warned, Event, Finished]
+    assert counting.do(_Counting.add, 3) == 5
 
 
-def _last(heard):
-    """Everything up to the end of a job."""
-    messages = []
-    while not messages or not isinstance(messages[-1], Finished | Failed):
-        messages.append(heard.get(timeout=20))
-    return messages
-
-
-def test_a_job_tells_on_its_way_and_its_service_remembers(host, heard):
-    host.start(_Counting.add, 2)
-    messages = _last(heard)
-    assert [type(message) for message in messages] == [Progressed, Warned, News, Finished]
-    assert messages[-1].result == 2
-    host.start(_Counting.add, 3)
-    assert _last(heard)[-1].result == 5
-
-
-def test_what_cannot_be_done_is_a_sentence_and_a_fault_has_its_traceback(host, heard):
-    host.start(_Counting.fail)
-    failed = _last(heard)[-1]
+def test_what_cannot_be_done_is_a_sentence_and_a_fault_has_its_traceback(counting):
+    failed = counting.do(_Counting.fail)
     assert (failed.kind, failed.sentence) == (
         FailureKind.EXPLAINED,
         "There is no such thing; look elsewhere.",
     )
-    host.start(_Counting.crash)
-    fault = _last(heard)[-1]
+    fault = counting.do(_Counting.crash)
     assert fault.kind is FailureKind.FAULT
     assert "ZeroDivisionError" in fault.details
 
 
-def test_a_cancelled_job_ends_and_the_next_one_runs(host, heard):
-    host.start(_Counting.wait)
-    host.cancel()
-    assert _last(heard)[-1].kind is FailureKind.CANCELLED
-    host.start(_Counting.add, 1)
-    assert _last(heard)[-1].result == 1
+def test_a_cancelled_job_ends_and_the_next_one_runs(counting):
+    counting.host.start(_Counting.wait)
+    counting.host.cancel()
+    assert counting.wait().kind is FailureKind.CANCELLED
+    assert counting.do(_Counting.add, 1) == 1
 
 
-def test_an_order_is_carried_out_beside_a_job(host, heard):
-    host.start(_Counting.wait)
-    host.order(_Counting.note, "now")
-    assert heard.get(timeout=20) == News("now")
-    host.cancel()
-    _last(heard)
+def test_an_order_is_carried_out_beside_a_job(counting):
+    counting.host.start(_Counting.wait)
+    counting.host.order(_Counting.note, "now")
+    assert counting.next() == Event("now")
+    counting.host.cancel()
+    assert counting.wait().kind is FailureKind.CANCELLED
 
 
-def test_a_killed_host_is_told_of_and_replaced(host, heard):
-    host.start(_Counting.die)
-    failed = _last(heard)[-1]
+def test_a_killed_host_is_reported_and_replaced(counting):
+    failed = counting.do(_Counting.die)
     assert failed.kind is FailureKind.DIED
     assert "counts" in failed.sentence
-    host.start(_Counting.add, 1)
-    assert _last(heard)[-1].result == 1
+    assert counting.do(_Counting.add, 1) == 1
 
 
-def test_a_hanging_job_does_not_keep_the_host_from_closing(host, heard):
-    host.start(_Counting.hang)
-    time.sleep(0.5)
-    pid = host.pid
-    began = time.monotonic()
-    host.close()
-    assert time.monotonic() - began < 4
+def test_a_hanging_job_does_not_keep_the_host_from_closing(counting):
+    counting.do(_Counting.hang, until=lambda event: event == "hangs")
+    pid = counting.host.pid
+    with AwakeClock() as clock:
+        began_s = clock.now_s()
+        counting.host.close()
+        assert clock.now_s() - began_s < 4
     assert not psutil.pid_exists(pid)

@@ -12,17 +12,20 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.remembered import remember_parameters
+from app.library.session_folder import remember_parameters
+from core.imagination.amount.result import PlannedAmount
+from core.imagination.judgement import Judgement
 from core.imagination.recording import Recorder
 from core.imagination.rendering.evidence import Evidence
-from core.imagination.results import Containability, Footprint, PourChoice, PourGrid
+from core.imagination.results import Drop, Footprint, PourChoice, PourGrid
+from core.imagination.risk import Tries
 from core.mesh import TriangleMesh
-from core.motion.pour.choosing import PourMotions
-from core.motion.pour.plan import PourFeasibility
+from core.mesh_file import write_ply
+from core.motion.pour.feasibility import PourFeasibility, PourMotions
 from core.parameters import apply_settings, load_preset
-from core.ply import write_ply
 from core.session import Session
 from core.session.pour_runs import Outcome, next_run_folder, write_outcome
+from core.stages import stage
 
 P = [[0.5, 1.0, 1.0], [0.25, 0.75, 1.0]]
 REPORT = "<!DOCTYPE html><title>report</title><h1>A report</h1><p>of a session</p>"
@@ -55,8 +58,15 @@ class SessionMaker:
         return folder
 
     def imagine(self, session: Session, kept: int) -> None:
-        self._stage(session, "containability", ("collision",), found(kept).save, {"seed": 0})
-        self._stage(session, "pouring", ("collision",), lambda stage: self._pours(stage, kept), {"seed": 0})
+        self.drop(session, kept)
+        self._imagined(session, "amount", PlannedAmount(60, None).save)
+        self._imagined(session, "pouring", pours().save if kept else lambda _: None)
+        self._imagined(session, "risk", Tries(None, choice(0, 1) if kept else None).save)
+
+    def drop(self, session: Session, kept: int) -> None:
+        """The drop and the verdict, without the pours."""
+        self._imagined(session, "containability", drop(kept).save)
+        self._imagined(session, "judgement", Judgement(0.0).save)
 
     def judge(self, folder: Path, chosen: tuple[int, int]) -> None:
         """The arm can make all pours but one, and makes `chosen`."""
@@ -67,13 +77,12 @@ class SessionMaker:
         )
         motions = PourMotions(feasible, choice(*chosen), choice(0, 1), None)
         with Session.open(folder) as session:
-            self._stage(session, "motion", ("containability", "pouring"), motions.save)
+            self._imagined(session, "motion", motions.save)
 
     def render(self, folder: Path) -> None:
         pictures = {"drop_6_end.png": png((640, 480), (200, 0, 0))}
         with Session.open(folder) as session:
-            inputs = ("reconstruction", "containability", "pouring")
-            self._stage(session, "evidence", inputs, Evidence(pictures, "EGL").save)
+            self._imagined(session, "evidence", Evidence(pictures, "EGL").save)
 
     def pour(
         self, folder: Path, spilled: int | None = None, *, done: bool = True, back_off: bool = False
@@ -103,11 +112,8 @@ class SessionMaker:
     def _mesh(self, stage: Path) -> None:
         write_ply(stage / "mesh.ply", box_mesh())
 
-    def _pours(self, stage: Path, kept: int) -> None:
-        table = choice(0, 1).to_table() if kept else None
-        (stage / "choice.json").write_text(json.dumps({"choice": table}))
-        if kept:
-            pours().save(stage)
+    def _imagined(self, session: Session, name: str, write: Callable[[Path], object]) -> None:
+        self._stage(session, name, stage(name).inputs_of("reconstruction"), write, {"seed": 0})
 
     def _stage(
         self,
@@ -122,13 +128,12 @@ class SessionMaker:
             write(stage)
 
 
-def found(kept: int) -> Containability:
+def drop(kept: int) -> Drop:
     positions = np.column_stack([np.linspace(0, 0.1, 100), np.linspace(0, 0.05, 100), np.full(100, 0.2)])
     retained = np.arange(100) < kept
     footprint = Footprint.of(positions[retained, :2], 0.1) if kept else None
-    return Containability(
-        0.0, positions, retained, np.array([[0, 0, 0], [0.1, 0.1, 0.1]]), footprint, Recorder(100).recording()
-    )
+    aabb_m = np.array([[0, 0, 0], [0.1, 0.1, 0.1]])
+    return Drop(positions, retained, aabb_m, footprint, Recorder(100).recording())
 
 
 def pours() -> PourGrid:
@@ -173,4 +178,4 @@ def box() -> Callable[[float], TriangleMesh]:
 @pytest.fixture(scope="module")
 def results() -> SimpleNamespace:
     """Makers of results for whoever writes no session."""
-    return SimpleNamespace(found=found, pours=pours, choice=choice, box_mesh=box_mesh, png=png)
+    return SimpleNamespace(drop=drop, pours=pours, choice=choice, box_mesh=box_mesh, png=png)

@@ -1,6 +1,6 @@
 import pytest
 
-from app import library_commands
+from app.cli import session_commands
 from app.library.places import SESSIONS_VARIABLE
 from core.errors import SessionError
 
@@ -15,7 +15,7 @@ def test_sessions_are_listed_one_a_line(make_session, capsys):
     make_session.pour(mug, spilled=2)
     block = make_session("block", kept=0)
     (make_session.empty("broken") / "session.json").write_text("nonsense")
-    library_commands.sessions("")
+    session_commands.sessions("")
     out, err = capsys.readouterr()
     header, *lines = out.splitlines()
     assert header.split() == ["created", "name", "from", "verdict", "P", "outcome", "MB", "folder"]
@@ -30,10 +30,10 @@ def test_sessions_are_listed_one_a_line(make_session, capsys):
 def test_sessions_are_searched(make_session, capsys):
     make_session("mug")
     make_session("block", kept=0)
-    library_commands.sessions("OPEN container")
+    session_commands.sessions("OPEN container")
     out, _ = capsys.readouterr()
     assert "mug" in out and "block" not in out
-    library_commands.sessions("teapot")
+    session_commands.sessions("teapot")
     out, err = capsys.readouterr()
     assert out == "" and "teapot" in err and str(make_session.root) in err
 
@@ -42,28 +42,29 @@ def test_export_names_what_it_wrote(make_session, tmp_path, capsys):
     folder = make_session("mug")
     make_session.report(folder)
     files = [tmp_path / name for name in ("a.html", "a.pdf", "a.zip")]
-    library_commands.export(folder, *files, overwrite=False, workers=1)
+    session_commands.export(folder, *files, overwrite=False, workers=1)
     out, _ = capsys.readouterr()
     assert out == "".join(f"Exported: {file}\n" for file in files)
     assert all(file.stat().st_size > 50 for file in files)
 
 
-def test_an_old_report_is_written_anew_first(make_session, tmp_path, monkeypatch):
+def test_an_old_report_is_written_anew_first(make_session, tmp_path, monkeypatch, capsys):
     folder = make_session("mug")
-    asked = []
+    written = []
 
-    def report(session, workers):
-        asked.append((session, workers))
-        make_session.report(session)
+    def report(pipeline):
+        written.append(pipeline.session.path)
+        return make_session.report(folder)
 
-    monkeypatch.setattr("app.commands.report", report)
-    library_commands.export(folder, None, None, tmp_path / "a.zip", overwrite=False, workers=2)
-    assert asked == []
-    library_commands.export(folder, tmp_path / "a.html", None, None, overwrite=False, workers=2)
-    library_commands.export(folder, tmp_path / "b.html", None, None, overwrite=False, workers=2)
-    assert asked == [(folder, 2)]
+    monkeypatch.setattr("core.pipeline.pipeline.Pipeline.report", report)
+    session_commands.export(folder, None, None, tmp_path / "a.zip", overwrite=False, workers=2)
+    assert written == []
+    session_commands.export(folder, tmp_path / "a.html", None, None, overwrite=False, workers=2)
+    session_commands.export(folder, tmp_path / "b.html", None, None, overwrite=False, workers=2)
+    assert written == [folder]
+    assert f"Report: {folder / 'report.html'}" in capsys.readouterr().out
 
 
 def test_no_session_is_a_sentence(tmp_path):
     with pytest.raises(SessionError, match="There is no session"):
-        library_commands.export(tmp_path / "x", tmp_path / "a", None, None, overwrite=False, workers=1)
+        session_commands.export(tmp_path / "x", tmp_path / "a", None, None, overwrite=False, workers=1)

@@ -3,9 +3,9 @@ import json
 import pytest
 
 from app.library.compare import UNKNOWN, compare
-from app.remembered import PARAMETERS_FILE
+from app.library.session_folder import PARAMETERS_FILE
 from core.errors import PoursightError, SessionError
-from core.ply import write_ply
+from core.mesh_file import write_ply
 from core.session import Session
 from core.session.operator_choice import write_operator_choice
 

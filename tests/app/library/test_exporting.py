@@ -9,7 +9,7 @@ from base64 import b64encode
 import pytest
 from PIL import ImageFile
 
-from app.library.exporting import export_html, export_pdf, export_zip, pdf_job, report_is_current
+from app.library.exchange import export_html, export_pdf, export_zip, pdf_job, report_is_current
 from core.errors import Cancelled, InputError, SessionError, StageError
 from core.progress import Reporter
 from core.workers import WorkerPool
@@ -89,7 +89,7 @@ def test_a_target_that_cannot_be_is_a_sentence(session, tmp_path, name):
 
 
 def test_no_report_yet(make_session, tmp_path):
-    with pytest.raises(SessionError, match="'poursight report"):
+    with pytest.raises(SessionError, match="write one first"):
         export_html(make_session("mug"), tmp_path / "a.html")
     with pytest.raises(SessionError, match="There is no session"):
         export_zip(tmp_path / "nowhere", tmp_path / "a.zip", Reporter())
@@ -169,7 +169,7 @@ def test_without_the_systems_libraries_a_pdf_is_a_sentence(session, tmp_path, mo
 
 def test_the_module_is_cheap_to_import():
     code = (
-        "import app.library.exporting, app.library.compare, app.library.index, app.library.trash, sys;"
+        "import app.library.exchange, app.library.compare, app.library.index, sys;"
         "print([m for m in ('weasyprint', 'PIL', 'trimesh', 'matplotlib', 'PySide6', 'send2trash', 'numba')"
         " if m in sys.modules])"
     )

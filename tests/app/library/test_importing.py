@@ -3,8 +3,7 @@ import zipfile
 
 import pytest
 
-from app.library.exporting import export_zip, report_is_current
-from app.library.importing import import_zip
+from app.library.exchange import export_zip, import_zip, report_is_current
 from app.library.summary import summarize
 from core.errors import InputError, PoursightError
 from core.progress import Reporter

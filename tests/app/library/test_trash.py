@@ -2,7 +2,7 @@ import importlib
 
 import pytest
 
-from app.library.trash import send_to_trash
+from app.library.index import send_to_trash
 from core.errors import SessionError
 from core.session import Session
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -9,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageDraw
 
+from core.evaluation.comparing import default_parameters
 from core.evaluation.evaluation import PICTURES_FOLDER, EvaluatedObject, Evaluation
 from core.evaluation.labels import Label
-from core.evaluation.pages.parameter_changes import default_parameters
 from core.evaluation.trials import Trial
 
 N_DROP, N_POURS, N_POUR = 200, 3, 60
@@ -136,6 +137,11 @@ def large_evaluation(
         objects=objects,
         versions={"poursight": "0.1.0", "numpy": "2.4.6", "pybullet": "3.2.7", "open3d": "0.20.0"},
     )
+
+
+def titles_of(chart: str) -> list[str]:
+    """The tooltips of a chart."""
+    return re.findall("<title>(.*?)</title>", chart)
 
 
 def draw_picture(path: Path, one: Trial) -> None:

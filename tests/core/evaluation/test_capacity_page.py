@@ -6,12 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from core.evaluation.pages.card_words import judged_sentence, poured_sentence
-from core.evaluation.pages.cards import cards_of
-from core.evaluation.pages.charts import Histogram, histogram, place, roc_curve
+from core.evaluation.pages.cards import cards_of, judged_sentence, poured_sentence
+from core.evaluation.pages.charts import histogram, roc_sentence
 from core.evaluation.pages.report import report_page
 from core.evaluation.tables import figures_of
-from tests.core.evaluation.evaluations import N_POURS, evaluation_of, held, trial, two_measures
+from tests.core.evaluation.evaluations import N_POURS, evaluation_of, held, titles_of, trial, two_measures
 
 
 def said(share: float, n_candies: float, ml: float, holds_rad: float, threshold: float = 0.1) -> str:
@@ -22,8 +21,8 @@ def said(share: float, n_candies: float, ml: float, holds_rad: float, threshold:
 
 def test_the_sentence_of_a_container() -> None:
     assert said(0.508, 242.4, 263.7, radians(42)) == (
-        "It holds 242 candies (264 ml), 51 % of its convex hull, more than the 10 % of a container; "
-        "nothing leaves up to 42 degrees."
+        "It holds 242 candies (264 ml), 51 % of its convex hull, more than the threshold of 10 %; "
+        "nothing falls out up to a tilt of 42 degrees."
     )
 
 
@@ -32,7 +31,10 @@ def test_the_sentence_of_a_container() -> None:
     [
         ((0.02, 8.0, 9.1, radians(6)), "It holds 8 candies (9 ml), 2 % of its convex hull, not more than"),
         ((0.01, 1.2, 1.0, radians(6)), "It holds 1 candy (1 ml)"),
-        ((0.0, 0.0, 0.0, 0.0), "It holds no candy, 0 % of its convex hull, not more than the 10 % of a"),
+        (
+            (0.0, 0.0, 0.0, 0.0),
+            "It holds no candy, 0 % of its convex hull, not more than the threshold of 10",
+        ),
         ((0.001, 0.4, 0.4, 0.0), "It holds less than one candy, 0 % of"),
     ],
 )
@@ -46,18 +48,18 @@ def test_a_share_alone_is_told_too() -> None:
 
 
 def test_strength_is_told_of_what_is_held() -> None:
-    assert said(0.2, 60.0, 80.0, 0.0).endswith("of a container; at the least tilt something leaves.")
-    assert said(0.0, 0.0, 0.0, 0.0).endswith("of a container.")
+    assert said(0.2, 60.0, 80.0, 0.0).endswith("of 10 %; something falls out at the slightest tilt.")
+    assert said(0.0, 0.0, 0.0, 0.0).endswith("the threshold of 10 %.")
 
 
 @pytest.mark.parametrize(
     ("share", "threshold", "texts"),
     [
-        (0.508, 0.1, "51 % of its convex hull, more than the 10 %"),
-        (0.1004, 0.1, "10.04 % of its convex hull, more than the 10 %"),
-        (0.0996, 0.1, "9.96 % of its convex hull, not more than the 10 %"),
-        (0.1251, 0.125, "13 % of its convex hull, more than the 12.5 %"),
-        (0.1, 0.1, "10 % of its convex hull, not more than the 10 %"),
+        (0.508, 0.1, "51 % of its convex hull, more than the threshold of 10 %"),
+        (0.1004, 0.1, "10.04 % of its convex hull, more than the threshold of 10 %"),
+        (0.0996, 0.1, "9.96 % of its convex hull, not more than the threshold of 10 %"),
+        (0.1251, 0.125, "13 % of its convex hull, more than the threshold of 12.5 %"),
+        (0.1, 0.1, "10 % of its convex hull, not more than the threshold of 10 %"),
     ],
 )
 def test_the_texts_tell_on_which_side_of_the_threshold_it_lies(
@@ -82,7 +84,7 @@ def test_the_page_never_says_omega_of_a_capacity(tmp_path: Path) -> None:
         "Histogram of capacity share by label",
         "Capacity share of containers and of others",
         "smallest capacity share of a container",
-        "square root of capacity share",
+        "square root of the capacity share",
         "<span>Capacity share ● threshold ┆</span>",
     ):
         assert words in shown, words
@@ -109,22 +111,19 @@ def test_cards_are_sorted_and_marked_by_the_capacity(tmp_path: Path) -> None:
         *(("broken", "failed"), ("close", "right"), ("sure", "right")),
     ]
     close = cards[1]
-    assert (close.mark, close.marks) == (round(100 * place(0.11), 1), [round(100 * place(0.5), 1)])
-    assert close.threshold == round(100 * place(0.1), 1) and "shown: seed 0, the worst" in close.seeds
+    assert (close.mark, close.marks) == (33.2, [70.7])
+    assert close.threshold == 31.6 and "shown: seed 0, the worst" in close.seeds
 
 
 def test_charts_are_of_the_capacity() -> None:
     found = figures_of(two_measures(), "imagination")
     chart = histogram(found)
-    assert chart.threshold.text == "threshold 0.1" and chart.n_zero_others == 1
-    assert [bar.title[:33] for bar in chart.bars if not bar.is_container] == [
-        "1 non-container with capacity sha"
-    ]
-    right = [bar for bar in chart.bars if bar.x > chart.threshold.at]
-    assert [bar.count for bar in right] == [1], "the mug alone lies above the threshold"
-    assert all(Histogram.LEFT <= bar.x <= Histogram.RIGHT for bar in chart.bars)
-    roc = roc_curve(found)
-    assert roc is not None and "50.0 % of the containers and 0.0 % of the others" in roc.said
+    bars = [title.partition(" with capacity share from ")[::2] for title in titles_of(chart)]
+    assert [what for what, _ in bars] == ["1 container", "1 container", "1 non-container"]
+    ranges = [[float(bound) for bound in found.split(" to ")] for _, found in bars]
+    assert all(low <= share < high for share, (low, high) in zip((0.08, 0.51, 0.02), ranges, strict=True))
+    assert "threshold 0.1" in chart and chart.count("1 at exactly 0") == 1
+    assert "50.0 % of the containers and 0.0 % of the others" in roc_sentence(found)
 
 
 def test_the_other_measure_has_charts_of_its_own(tmp_path: Path) -> None:
@@ -133,6 +132,6 @@ def test_the_other_measure_has_charts_of_its_own(tmp_path: Path) -> None:
         page.index(f"{measure} of containers and of others</h2>") for measure in ("Capacity share", "Omega")
     ]
     assert both == sorted(both)
-    assert page.count("What was judged what") == 2
+    assert page.count("Judgements by label") == 2
     one = replace(two_measures(), variants=("imagination",))
     assert "Omega of containers and of others" not in report_page(one, tmp_path)

@@ -9,8 +9,8 @@ import pytest
 from core.evaluation import judging
 from core.evaluation.labels import LabelledObject
 from core.evaluation.verdicts import ObjectVerdict
+from core.mesh_file import write_ply
 from core.parameters import Parameters, apply_settings
-from core.ply import write_ply
 from hardware.simulation.objects import builtin_object
 from tests.core.evaluation.few_candies import FEW_CANDIES
 

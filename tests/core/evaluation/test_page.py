@@ -4,13 +4,10 @@ from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
-import pytest
-
 from core.evaluation.evaluation import PICTURES_FOLDER, Evaluation
 from core.evaluation.outputs import write_outputs
-from core.evaluation.pages.card_words import judged_sentence, poured_sentence
-from core.evaluation.pages.cards import cards_of
-from core.evaluation.pages.charts import Histogram, histogram, place, roc_curve, scatter
+from core.evaluation.pages.cards import cards_of, judged_sentence, poured_sentence
+from core.evaluation.pages.charts import histogram, roc_curve, roc_sentence, scatter
 from core.evaluation.pages.report import report_page
 from core.evaluation.statistics import Figures
 from tests.core.evaluation.evaluations import (
@@ -19,6 +16,7 @@ from tests.core.evaluation.evaluations import (
     evaluation_of,
     large_evaluation,
     small_evaluation,
+    titles_of,
     trial,
 )
 
@@ -73,20 +71,20 @@ def test_figures_first_then_failures_then_the_rest(tmp_path: Path) -> None:
         "96.15",
         "Table II",
         "98.18",
-        "Poured into, though no containers",
+        "Non-containers that were poured into",
         "What went wrong",
         "24 of 200 candies stayed: Omega 0.120 is more than the threshold of 0.05",
         "8 of 200 candies stayed",
         "Poured 3 times: 0, 2 and 0 of 60 candies spilled (imagined: 98 % land inside). 1 stayed in the cup.",
         "Failed: The mesh cannot be read.",
         "Omega of containers and of others",
-        "What was judged what",
+        "Judgements by label",
         "Judged right, and nothing spilled",
         "vase",
         "Ambiguous objects",
         "tissue <box>",
         "Parameters",
-        "All are the default ones.",
+        "All have their default values.",
         "Times and versions",
         "scan and reconstruction",
         "pybullet 3.2.7",
@@ -155,7 +153,7 @@ def test_the_order_of_the_gallery(tmp_path: Path) -> None:
 def test_sentences_of_a_card() -> None:
     right = trial("ball", "non-container", 10)
     assert judged_sentence(right).endswith(
-        "0.050 is not more than the threshold of 0.05, so it was judged no container."
+        "0.050 is not more than the threshold of 0.05, so it was judged not to be a container."
     )
     assert poured_sentence(right, N_POURS) == ""
     missed = trial("mug", "container", 2)
@@ -174,37 +172,38 @@ def test_changed_parameters_and_the_honest_figure_are_told(tmp_path: Path) -> No
 
 
 def test_the_histogram_counts_every_trial_once() -> None:
-    found = Figures.of(small_evaluation().trials, N_POURS)
-    chart = histogram(found)
-    n_containers = sum(bar.count for bar in chart.bars if bar.is_container) + chart.n_zero_containers
-    n_others = sum(bar.count for bar in chart.bars if not bar.is_container) + chart.n_zero_others
-    assert (n_containers, n_others, chart.n_zero_others) == (4, 5, 2)
-    below = [bar for bar in chart.bars if bar.x + bar.width <= chart.threshold.at]
-    assert sum(bar.count for bar in below) == 3, "tray, spoon and hammer lie below the threshold"
-    assert all(Histogram.LEFT <= bar.x <= Histogram.RIGHT - bar.width for bar in chart.bars)
-
-
-def test_small_values_can_be_told_apart() -> None:
-    assert place(0.0) == 0 and place(1.0) == 1
-    assert place(0.01) == pytest.approx(0.1)
-    assert place(0.2, 0.1) == 1, "what lies beyond the axis stays on it"
+    chart = histogram(Figures.of(small_evaluation().trials, N_POURS))
+    bars = [(int(title.split()[0]), title) for title in titles_of(chart)]
+    n_others = sum(count for count, title in bars if "non-container" in title)
+    assert (sum(count for count, _ in bars), n_others) == (7, 3)
+    assert "2 at exactly 0" in chart and "0 at exactly 0" in chart and "threshold 0.05" in chart
 
 
 def test_the_rocs_ring_is_at_the_threshold() -> None:
-    chart = roc_curve(Figures.of(small_evaluation().trials, N_POURS))
-    assert chart is not None
-    assert chart.at == pytest.approx((chart.LEFT + chart.SIDE / 5, chart.TOP + chart.SIDE / 4))
-    assert "75.0 % of the containers and 20.0 % of the others" in chart.said
+    found = Figures.of(small_evaluation().trials, N_POURS)
+    said = "75.0 % of the containers and 20.0 % of the others"
+    curve = roc_curve(found)
+    assert curve is not None and said in roc_sentence(found)
+    (title,) = titles_of(curve)
+    assert said in title
     assert roc_curve(Figures.of([trial("mug", "container", 9)], 1)) is None
 
 
-def test_the_scatter_puts_what_has_not_changed_on_the_diagonal() -> None:
-    pairs = ("same", "container", 0.3, 0.3), ("less", "container", 0.3, 0.1)
-    chart = scatter(pairs, (0.05, 0.08), ("Omega", "Omega"))
-    same, less = chart.dots
-    assert same.x - chart.LEFT == pytest.approx(chart.TOP + chart.SIDE - same.y)
-    assert less.x == same.x and less.y > same.y
-    assert less.title == "less (container): 0.300 before, 0.100 after"
+def test_the_scatter_names_every_object() -> None:
+    pairs = ("<same>", "container", 0.3, 0.3), ("less", "ambiguous", 0.3, 0.1)
+    chart = scatter(pairs, (0.05, 0.08), ("Omega", "Omega"), "Each object")
+    assert titles_of(chart) == [
+        "&lt;same&gt; (container): 0.300 before, 0.300 after",
+        "less (ambiguous): 0.300 before, 0.100 after",
+    ]
+    assert "Omega before" in chart and 'aria-label="Each object"' in chart
+
+
+def test_charts_take_the_pages_colours_and_are_the_same_every_time() -> None:
+    found = Figures.of(small_evaluation().trials, N_POURS)
+    chart = histogram(found)
+    assert "var(--accent)" in chart and "#0000" not in chart
+    assert chart == histogram(found)
 
 
 def test_an_evaluation_without_pours_or_others(tmp_path: Path) -> None:
@@ -212,4 +211,4 @@ def test_an_evaluation_without_pours_or_others(tmp_path: Path) -> None:
     text = page_of(replace(found, source="mesh"), tmp_path).text
     assert "1 object, given as meshes, one seed" in text and "2 h 10 min" in text
     assert "there was no container to pour into" in text
-    assert "There is no ROC curve" in text and "Nothing: every labelled object was judged right" in text
+    assert "There is no ROC curve" in text and "Nothing: every labelled object was judged correctly" in text

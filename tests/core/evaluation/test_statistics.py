@@ -1,12 +1,22 @@
-"""Figures of a few trials, each counted by hand."""
+"""Figures of a few trials, each counted by hand; intervals against published values and their equation."""
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 from core.evaluation.evaluation import EvaluatedObject
-from core.evaluation.intervals import Share
-from core.evaluation.statistics import Confusion, Figures, Margin, agreement_of, sets_of, stage_times
+from core.evaluation.statistics import (
+    Confusion,
+    Figures,
+    Margin,
+    Share,
+    agreement_of,
+    auc_interval,
+    sets_of,
+    stage_times,
+)
 from core.evaluation.tables import figures_of
 from tests.core.evaluation.evaluations import (
     N_POURS,
@@ -66,8 +76,8 @@ def test_the_score_is_what_judges() -> None:
     assert (method.measure, omega.measure) == ("Capacity share", "Omega")
     # 0.51 and 0.08 above 0.02 and 0; by Omega the tray with 0.1 lies below the can with 0.12
     assert (method.auc, omega.auc) == (1.0, 0.75)
-    assert method.margin == Margin((0.08, "tray"), (0.02, "can"), 0.1, "Capacity share")
-    assert omega.margin == Margin((0.1, "tray"), (0.12, "can"), 0.05, "Omega")
+    assert (method.margin, method.threshold) == (Margin((0.08, "tray"), (0.02, "can")), 0.1)
+    assert (omega.margin, omega.threshold) == (Margin((0.1, "tray"), (0.12, "can")), 0.05)
     assert method.of_seed(0) == method
     assert method.roc[:3] == ((0, 0), (0, 0.5), (0, 1))
 
@@ -95,8 +105,8 @@ def test_a_set_in_which_all_failed_has_the_measure_of_its_variant() -> None:
 
 def test_what_failed_does_not_tell_the_threshold() -> None:
     failed = trial("jar", "container", None, threshold=0.13)
-    assert Figures.of([failed, held("mug", "container", 0.5)], 1).margin.threshold == 0.1
-    assert Figures.of([failed], 1).margin.threshold == 0.13
+    assert Figures.of([failed, held("mug", "container", 0.5)], 1).threshold == 0.1
+    assert Figures.of([failed], 1).threshold == 0.13
 
 
 def test_ambiguous_objects_tell_the_measure_too() -> None:
@@ -152,3 +162,45 @@ def test_agreement_of_the_people_asked() -> None:
     assert found.mean_share == pytest.approx((1 + 1 + 0.8 + 0.6) / 4)
     assert list(found.n_objects.items()) == [((5, 5), 2), ((4, 5), 1), ((3, 5), 1)]
     assert agreement_of([EvaluatedObject("a", "container")]) is None
+
+
+@pytest.mark.parametrize(
+    ("count", "n", "low", "high"),
+    [  # Newcombe (1998), Table I, method 3
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0, 0.1611),
+        (1, 29, 0.0061, 0.1718),
+    ],
+)
+def test_wilson_as_published(count: int, n: int, low: float, high: float) -> None:
+    assert Share(count, n).interval == pytest.approx((low, high), abs=6e-5)
+
+
+def test_the_papers_shares_and_nothing_of_nothing() -> None:
+    assert round(100 * (Share(54, 55).value or 0), 2) == 98.18
+    assert round(100 * (Share(125, 130).value or 0), 2) == 96.15
+    assert (Share(0, 0).value, Share(0, 0).interval) == (None, None)
+    assert Share(7, 7).interval is not None and Share(7, 7).interval[1] == 1.0
+    assert Share(0, 7).interval is not None and Share(0, 7).interval[0] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("auc", "n_containers", "n_others"),
+    [(0.8932, 51, 58), (1.0, 19, 22), (0.5, 5, 9), (0.0, 4, 4), (0.99, 2, 30)],
+)
+def test_the_aucs_interval_solves_its_equation(auc: float, n_containers: int, n_others: int) -> None:
+    bound = Polynomial([0, 1])
+    spare, square = (n_containers + n_others) / 2 - 1, 1.959963984540054**2
+    both = (2 - bound) * (1 + bound)
+    variance = bound * (1 - bound) * (both + spare * ((1 - bound) * (1 + bound) + bound * (2 - bound)))
+    roots = ((bound - auc) ** 2 * both * (n_containers * n_others) - square * variance).roots()
+    real = np.sort(roots.real[np.abs(roots.imag) < 1e-7])
+    inside = real[(real > -1e-6) & (real < 1 + 1e-6)]
+    assert auc_interval(auc, n_containers, n_others) == pytest.approx((inside[0], inside[-1]), abs=1e-6)
+
+
+def test_a_perfect_auc_of_few_objects_is_not_certain() -> None:
+    few, many = auc_interval(1.0, 5, 5), auc_interval(1.0, 50, 50)
+    assert few[1] == many[1] == 1.0
+    assert few[0] < many[0] < 1.0

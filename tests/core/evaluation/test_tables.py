@@ -1,17 +1,20 @@
 """The paper's tables, with its own figures in them, and their text."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
-from core.evaluation.intervals import Share
-from core.evaluation.plain_text import text_tables
+from core.evaluation.statistics import Share
 from core.evaluation.tables import (
-    classification_rows,
-    paper_classification,
-    paper_pouring,
-    pouring_rows,
+    classification,
+    paper_rows,
+    percent,
+    pouring,
+    table_rows,
+    text_tables,
     title_of,
+    world_rows,
 )
 from core.evaluation.trials import Trial
 from core.evaluation.variants import variants_of
@@ -26,9 +29,10 @@ from tests.core.evaluation.evaluations import (
 
 
 def test_the_papers_rows_are_the_papers() -> None:
-    accuracies = [f"{100 * (row.accuracy.value or 0):.2f}" for row in paper_classification()]
+    judged = [row.accuracy for row in classification(paper_rows())]
+    accuracies = [percent(share.value) for share in judged if share is not None]
     assert accuracies == ["100.00", "100.00", "96.15"]
-    rates = [f"{100 * (row.pours.value or 0):.2f}" for row in paper_pouring()]
+    rates = [f"{100 * (row.pours.value or 0):.2f}" for row in pouring(paper_rows())]
     assert rates == ["82.61", "91.30", "100.00", "100.00", "94.55", "98.18"]
 
 
@@ -37,17 +41,32 @@ def test_our_rows_count_as_the_paper_does() -> None:
     spilled = trial("vase", "container", 80, spilled=(0,), in_cup=(0,))
     one_pour = [Trial(**{**one.__dict__, "spilled": (0,), "in_cup": (0,)}) for one in containers]
     found = evaluation_of(*one_pour, Trial(**{**spilled.__dict__, "spilled": (4,)}), n_pours=1)
-    (row,) = pouring_rows(found)
-    assert (row.pours, row.clean_objects, row.n_objects) == (Share(54, 55), Share(54, 55), 55)
+    (row,) = pouring(table_rows(found))
+    assert (row.pours, row.clean_objects, row.n_containers) == (Share(54, 55), Share(54, 55), 55)
     assert "98.18 (90.4–99.7)" in text_tables(found)
+
+
+def test_pours_are_counted_by_ground_truth_world() -> None:
+    worlds = ("bullet", "mujoco", "peanuts")
+    clean = trial("mug", "container", 80, worlds=worlds, spilled=(0, 0, 0), in_cup=(0, 0, 0))
+    spilled = trial("tray", "container", 80, worlds=worlds, spilled=(0, 2, 0), in_cup=(0, 0, 0))
+    found = evaluation_of(clean, spilled, worlds=worlds)
+    assert [(world, pours) for _, world, pours in world_rows(found)] == [
+        ("bullet", Share(2, 2)),
+        ("mujoco", Share(1, 2)),
+        ("peanuts", Share(2, 2)),
+    ]
+    lines = text_tables(found).splitlines()
+    assert any("mujoco" in line and "50.00" in line for line in lines)
+    assert world_rows(evaluation_of(replace(clean, worlds=("bullet",) * 3))) == []
 
 
 def test_each_set_has_a_row_for_each_variant(tmp_path: Path) -> None:
     found = large_evaluation(tmp_path, n_seeds=1, n_variants=2, with_pictures=False)
-    rows = [(row.dataset, row.variant) for row in classification_rows(found)]
+    rows = [(row.dataset, row.variant) for row in table_rows(found)]
     sets = ("all", "restricted", "calibration", "other")
     assert rows == [(one, variant) for one in sets for variant in ("imagination", "fixed-theta")]
-    n = {row.dataset: row.n_objects for row in classification_rows(found)}
+    n = {row.dataset: row.n_objects for row in table_rows(found)}
     assert (n["all"], n["calibration"] + n["other"]) == (41, 41)
 
 
@@ -65,7 +84,7 @@ def test_the_text_fits_a_terminal_and_says_what_failed(tmp_path: Path) -> None:
 
 
 def test_each_row_says_what_makes_a_container() -> None:
-    rows = [*classification_rows(two_measures()), *paper_classification()]
+    rows = classification([*table_rows(two_measures()), *paper_rows()])
     assert [row.rule for row in rows] == [
         *("capacity share > 0.1", "Omega > 0.05"),
         *("", "Omega > 0", "Omega > 0"),
@@ -79,10 +98,12 @@ def test_each_row_says_what_makes_a_container() -> None:
 
 def test_the_verdicts_are_rows_of_their_own() -> None:
     judged = {one.name: one.of(Parameters()).containability for one in variants_of(["all"])}
-    assert {name for name, one in judged.items() if one.verdict == "omega"} == {"omega", "threshold-0"}
+    assert {name for name, one in judged.items() if one.verdict == "omega"} == {
+        "paper", "authors", "omega", "threshold-0"
+    }  # fmt: skip
     assert judged["omega"] == Parameters().containability.model_copy(update={"verdict": "omega"})
     assert judged["threshold-0"].omega_threshold == 0 < judged["omega"].omega_threshold
-    assert title_of("omega") == "Imagination, Omega > Omega_thr (calibrated)"
+    assert title_of("omega") == "Imagination, Omega > Omega_thr (tuned)"
 
 
 def test_nothing_but_ambiguous_objects() -> None:

@@ -6,7 +6,7 @@ from scipy.spatial.transform import Rotation
 from core.imagination.body import body_files
 from core.imagination.bullet_world import BulletWorld
 from core.mesh import TriangleMesh
-from core.parameters.imagination import ContactParameters, ParticleParameters, SolverParameters
+from core.parameters.bodies import ContactParameters, ParticleParameters, SolverParameters
 
 SIDE_M, SQUARES = 0.3, 24
 PER_SIDE = 8
@@ -31,7 +31,7 @@ def thrown(
         body_files(sheet=((_sheet(tilt_rad),), True)) as files,
         world_type(solver, particle, contact, region_m) as world,
     ):
-        world.add_fixed_body(files["sheet"], contact.restitution)
+        world.add_fixed_body(files["sheet"])
         axis = np.linspace(-SIDE_M / 3, SIDE_M / 3, PER_SIDE)
         for x in axis:
             for y in axis:

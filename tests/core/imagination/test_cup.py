@@ -63,16 +63,17 @@ def test_the_parts_are_convex_closed_and_as_large_as_the_cone():
 @pytest.mark.parametrize("preset", ["default", "paper", "authors"])
 def test_packed_candies_lie_inside_without_touching(preset):
     parameters = load_preset(preset)
+    cup = parameters.pouring.cup
     packed = pack_cup(parameters, 0)
     assert len(packed) == parameters.pouring.n_pour
     angles = np.linspace(0, 2 * np.pi, 24)
     extents = particle_extents_m(parameters.particle) / 2
     rim = np.column_stack([np.cos(angles), np.sin(angles), np.ones(24)]) * extents
     surface = packed[:, None, :] + np.vstack([rim, rim * [1, 1, -1]])
-    in_cup = transform_points(np.linalg.inv(cup_pose(CUP, np.zeros(3), 0.0, 0.0)), surface)
-    assert (np.hypot(in_cup[..., 0], in_cup[..., 1]) < inner_radius_m(CUP, in_cup[..., 2])).all()
-    assert (in_cup[..., 2] > CUP.wall_m).all()
-    assert (in_cup[..., 2] < CUP.length_m).all()
+    in_cup = transform_points(np.linalg.inv(cup_pose(cup, np.zeros(3), 0.0, 0.0)), surface)
+    assert (np.hypot(in_cup[..., 0], in_cup[..., 1]) < inner_radius_m(cup, in_cup[..., 2])).all()
+    assert (in_cup[..., 2] > cup.wall_m).all()
+    assert (in_cup[..., 2] < cup.length_m).all()
     gaps = np.abs(packed[:, None] - packed[None]) / particle_extents_m(parameters.particle)
     apart = gaps.max(axis=2) + 2 * np.eye(len(packed))
     assert apart.min() >= 1.0
@@ -84,3 +85,10 @@ def test_a_cup_too_small_for_n_pour_says_how_many_fit():
     parameters = apply_settings(Parameters(), {"pouring.cup.length_m": 0.03, "pouring.n_pour": 900})
     with pytest.raises(StageError, match=r"cannot hold 900 candies.*room for \d+.*n_pour"):
         pack_cup(parameters, 0)
+
+
+def test_the_released_pivot_is_3_mm_above_the_inner_rims_lowest_point_when_the_cup_is_ready_to_pour():
+    cup = load_preset("authors").pouring.cup
+    pose = cup_pose(cup, np.zeros(3), 0.0, 0.0)
+    rim_in_cup = np.array([cup.mouth_radius_m - cup.wall_m, 0.0, cup.length_m])
+    assert transform_points(pose, rim_in_cup[None])[0] == pytest.approx([0, 0, -0.003], abs=1e-9)

@@ -6,22 +6,24 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.errors import StageError
-from core.imagination.drop_grid import drop_positions, grid_counts
+from core.imagination.drop import drop_positions, grid_counts
 from core.parameters import Parameters, load_preset
+from core.parameters.imagination import ContainabilityParameters
 
 sizes = st.floats(0.01, 0.6)
+LIMITS = load_preset("authors").containability
 
 
 def test_the_authors_tray_gets_the_authors_308_candies():
     # 254.7 x 99.3 mm padded by 3 mm, a candy of 9 mm: 28 x 11 by the rule; their program drops 308.
-    counts = grid_counts(np.array([0.260651, 0.105273, 0.0492]), np.array([0.009, 0.009]), 289, 64)
+    counts = grid_counts(np.array([0.260651, 0.105273, 0.0492]), np.array([0.009, 0.009]), LIMITS)
     assert counts == (28, 11, 1)
 
 
 @given(sizes, sizes, st.integers(70, 400), st.integers(1, 70))
 def test_the_rule_of_the_paper(width, depth, n_max, n_min):
-    pitch = 0.009
-    n_x, n_y, n_z = grid_counts(np.array([width, depth, 0.1]), np.array([pitch, pitch]), n_max, n_min)
+    pitch, limits = 0.009, ContainabilityParameters(n_max=n_max, n_min=n_min)
+    n_x, n_y, n_z = grid_counts(np.array([width, depth, 0.1]), np.array([pitch, pitch]), limits)
     first_x, first_y = floor(width / pitch), floor(depth / pitch)
     if first_x * first_y > n_max:
         s = sqrt(n_max / (first_x * first_y))
@@ -32,9 +34,16 @@ def test_the_rule_of_the_paper(width, depth, n_max, n_min):
         assert (n_x, n_y, n_z) == (first_x, first_y, 1)
 
 
+@pytest.mark.parametrize(("preset", "layers"), [("paper", 2), ("authors", 3)])
+def test_at_32_candies_the_text_has_two_layers_and_the_code_three(preset, layers):
+    limits = load_preset(preset).containability
+    counts = grid_counts(np.array([0.073, 0.037, 0.1]), np.array([0.009, 0.009]), limits)
+    assert counts == (8, 4, layers)
+
+
 def test_an_object_smaller_than_a_candy_is_refused():
     with pytest.raises(StageError, match=r"smaller than a candy \(9\.0 mm"):
-        grid_counts(np.array([0.008, 0.1, 0.1]), np.array([0.009, 0.009]), 289, 64)
+        grid_counts(np.array([0.008, 0.1, 0.1]), np.array([0.009, 0.009]), LIMITS)
 
 
 def test_layers_start_1_cm_above_and_are_5_cm_apart():

@@ -3,10 +3,9 @@
 import numpy as np
 
 from core.geometry import make_pose, rotation_x
-from core.motion.arm_models import UR5
-from core.motion.arm_shape import Capsule, arm_shape, capsule_around_box
+from core.motion.arm_models import UR5, Capsule, arm_shape, capsule_around_box
 from core.motion.clearance import MotionScene, axis_aligned_obstacle
-from core.motion.view_planning import ViewTask
+from core.motion.views import ViewTask
 
 T_FLANGE_CAMERA = make_pose(rotation_x(np.radians(-30)), (0, -0.09, 0.08))
 """90 mm beside the flange axis, 80 mm forward, the optical axis 30 degrees towards the flange axis: the

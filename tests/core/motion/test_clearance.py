@@ -2,10 +2,9 @@ import numpy as np
 import pytest
 
 from core.geometry import make_pose, rotation_z, transform_points
-from core.motion.arm_models import UR5
-from core.motion.arm_shape import arm_shape, capsule_around_box
+from core.motion.arm_models import UR5, arm_shape, capsule_around_box
 from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
-from core.motion.distances import segment_box_distance, segment_segment_distance
+from core.motion.distances import segment_segment_distance
 from core.motion.kinematics import link_poses
 
 UPRIGHT_RAD = np.radians([0.0, -90, 0, -90, 0, 0])
@@ -13,32 +12,6 @@ UPRIGHT_RAD = np.radians([0.0, -90, 0, -90, 0, 0])
 
 def along(start: np.ndarray, end: np.ndarray, n: int) -> np.ndarray:
     return start[..., None, :] + np.linspace(0, 1, n)[:, None] * (end - start)[..., None, :]
-
-
-def test_segment_to_box_is_the_smallest_over_its_points():
-    random = np.random.default_rng(0)
-    start, end = random.uniform(-1, 1, (2, 2000, 3))
-    half = random.uniform(0.05, 0.6, (2000, 3))
-    end[:100, 1] = start[:100, 1]
-    end[100:120] = start[100:120]
-    points = along(start, end, 2001)
-    brute = np.linalg.norm(points - np.clip(points, -half[:, None], half[:, None]), axis=-1).min(axis=1)
-    exact = segment_box_distance(start, end, half)
-    assert np.abs(exact - brute).max() < 5e-4
-    assert (exact <= brute + 1e-12).all()
-    assert (exact == 0).any()
-
-
-def test_segment_to_segment_is_the_smallest_over_their_points():
-    random = np.random.default_rng(1)
-    a, b, c, d = random.uniform(-1, 1, (4, 100, 3))
-    d[:20] = c[:20] + 0.7 * (b - a)[:20]
-    d[20:25] = c[20:25]
-    first, second = along(a, b, 401), along(c, d, 401)
-    brute = [np.linalg.norm(p[:, None] - q[None], axis=-1).min() for p, q in zip(first, second, strict=True)]
-    exact = segment_segment_distance(a, b, c, d)
-    assert np.abs(exact - brute).max() < 5e-4
-    assert (exact <= np.array(brute) + 1e-12).all()
 
 
 def test_clearance_is_that_of_the_nearest_capsule_to_an_oriented_box():

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from core.motion.arm_models import UR5, UR5E, ArmModel
-from core.motion.inverse_kinematics import inverse_kinematics
-from core.motion.kinematics import flange_pose
+from core.motion.kinematics import flange_pose, inverse_kinematics
 
 oracle = pytest.importorskip("ur_analytic_ik", reason="needs the package ur-analytic-ik")
 

@@ -2,9 +2,11 @@ import numpy as np
 import pytest
 
 from core.motion.arm_models import UR5, UR5E, ArmModel
-from core.motion.inverse_kinematics import branch_of, configurations, inverse_kinematics
 from core.motion.kinematics import (
+    branch_of,
+    configurations,
     flange_pose,
+    inverse_kinematics,
     jacobian,
     nearest_turn,
     singularity_measure,

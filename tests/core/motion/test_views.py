@@ -5,9 +5,15 @@ from core.geometry import transform_points
 from core.motion.arm_models import UR5
 from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose, singularity_measure, within_limits
-from core.motion.view_choice import choose_spread_views, coverage, dome_directions
-from core.motion.view_planning import Dome, ReachableView, reachable_views
 from core.motion.view_tour import ViewNet, plan_tour
+from core.motion.views import (
+    Dome,
+    ReachableView,
+    choose_spread_views,
+    coverage,
+    dome_directions,
+    reachable_views,
+)
 from tests.core.motion.cell import HOME_RAD, T_FLANGE_CAMERA, TASK, simulated_cell
 
 DOME = Dome(tuple(range(30, 91, 15)), tuple(range(-180, 180, 30)), (0.55, 0.7), (-90, 0, 90))
@@ -69,7 +75,7 @@ def test_no_views_no_choice():
     assert choose_spread_views((), 3) == ()
 
 
-def test_tour_takes_every_direction_once_by_clear_ways(views):
+def test_tour_takes_every_direction_once_on_clear_paths(views):
     the_scene = simulated_cell()
     net = ViewNet(the_scene, views, HOME_RAD, TASK.min_clearance_m)
     assert 0 < len(net.views) <= len(views)

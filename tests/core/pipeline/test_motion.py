@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from core.motion.pour.plan import PourFeasibility
+from core.motion.pour.feasibility import PourFeasibility
 from core.parameters import Parameters, apply_settings
-from core.pipeline import pipeline as pipeline_module
+from core.pipeline import running
 from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
 from core.session import Session
@@ -16,6 +16,7 @@ from hardware.cell import read_cell
 from hardware.cell.scene import pour_cell
 from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.objects import builtin_object
+from tests.app.quick_cell import quick_cell
 
 QUICK = {
     "reconstruction.voxel_m": 0.005,
@@ -39,8 +40,9 @@ def pool():
 def pipeline(tmp_path_factory, pool):
     """Imagined once; each test asks about an arm of its own."""
     with Session.create_or_open(tmp_path_factory.mktemp("motion") / "session") as session:
+        scan = simulate_scan(builtin_object("bowl"), 0, Reporter(), cell=quick_cell())
         known = Pipeline(session, apply_settings(Parameters(), QUICK), pool, Reporter())
-        known.keep_scan(simulate_scan(builtin_object("bowl"), 0, Reporter()), {"object": "bowl"})
+        known.keep_scan(scan, {"object": "bowl"})
         yield known
 
 
@@ -54,9 +56,10 @@ def arm_that_cannot(monkeypatch, *directions):
             for j in range(3)
         )
 
-    monkeypatch.setattr(pipeline_module, "judge_pours", judge)
+    monkeypatch.setattr(running, "judge_pours", judge)
 
 
+@pytest.mark.system
 def test_the_pour_that_is_made_was_tried_even_if_it_was_not_the_first_choice(pipeline, monkeypatch):
     cell = pour_cell(read_cell())
     imagination = pipeline.imagination()
@@ -74,7 +77,7 @@ def test_the_pour_that_is_made_was_tried_even_if_it_was_not_the_first_choice(pip
     assert (risk.spilled[..., : known.spilled.shape[2]] == known.spilled)[known.n_tries > 1].all()
     again = pipeline.motion(cell, {"cell": "one"})
     assert np.array_equal(again.risk.spilled, risk.spilled)
-    assert json.loads((pipeline.session.folder("pouring") / "risk.json").read_text()) == known.to_table()
+    assert json.loads((pipeline.session.folder("risk") / "risk.json").read_text()) == known.to_table()
 
 
 def test_an_arm_that_can_make_the_first_choice_costs_no_more_tries(pipeline, monkeypatch):

@@ -12,6 +12,8 @@ from core.session import Session
 from core.workers import WorkerPool
 from hardware.scanning.simulated import simulate_scan
 from hardware.simulation.objects import builtin_object
+from tests.app.quick_cell import quick_cell
+from tests.app.sessions import copied
 
 QUICK = {
     "reconstruction.voxel_m": 0.005,
@@ -23,7 +25,8 @@ QUICK = {
     "risk.n_tries": 4,
     "evidence.films": False,
 }
-STAGES = ("scan", "reconstruction", "collision", "containability", "pouring", "evidence")
+IMAGINED = ["containability", "judgement", "amount", "pouring", "risk"]
+STAGES = ("scan", "reconstruction", "collision", *IMAGINED, "evidence")
 
 
 class Recorder(Reporter):
@@ -49,13 +52,30 @@ def pool():
 
 @pytest.fixture(scope="module")
 def scan():
-    return simulate_scan(builtin_object("bowl"), 0, Reporter())
+    """With few views: what is tested is which stages run."""
+    return simulate_scan(builtin_object("bowl"), 0, Reporter(), cell=quick_cell())
 
 
 @pytest.fixture
 def session(tmp_path, scan, pool):
     with Session.create_or_open(tmp_path / "session") as held:
         pipeline_of(held, pool).keep_scan(scan, {"object": "bowl"})
+        yield held
+
+
+@pytest.fixture(scope="module")
+def imagined(tmp_path_factory, scan, pool):
+    """A session's folder, to be copied, with everything imagined."""
+    folder = tmp_path_factory.mktemp("imagined") / "session"
+    with Session.create_or_open(folder) as held:
+        pipeline_of(held, pool).keep_scan(scan, {"object": "bowl"})
+        pipeline_of(held, pool).imagination()
+    return folder
+
+
+@pytest.fixture
+def imagined_session(imagined, tmp_path):
+    with Session.open(copied(imagined, tmp_path / "session")) as held:
         yield held
 
 
@@ -76,6 +96,7 @@ def renewed(before, after):
     return [stage for stage in STAGES if before.get(stage) != after.get(stage)]
 
 
+@pytest.mark.system
 def test_only_what_a_parameter_touches_runs_again(session, pool):
     path = pipeline_of(session, pool).report()
     assert "Open container" in path.read_text(encoding="utf-8")
@@ -87,21 +108,36 @@ def test_only_what_a_parameter_touches_runs_again(session, pool):
 
     pipeline_of(session, pool, {"containability.omega_threshold": 0.01}).imagination()
     second = created(session)
-    assert renewed(first, second) == ["containability", "pouring"]
+    assert renewed(first, second) == ["judgement", "amount", "pouring"], "the same pours again"
 
     pipeline_of(session, pool, {"reconstruction.voxel_m": 0.006}).imagination()
-    assert renewed(second, created(session)) == ["reconstruction", "collision", "containability", "pouring"]
+    assert renewed(second, created(session)) == ["reconstruction", "collision", *IMAGINED]
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "runs"),
+    [
+        ("pouring.gamma_0_rad", 0.7, ["pouring", "risk"]),
+        ("risk.n_tries", 2, ["risk"]),
+        ("pouring.n_pour", 8, ["amount", "pouring", "risk"]),
+    ],
+)
+def test_a_pouring_parameter_runs_no_drop(name, value, runs, imagined_session, pool):
+    session = imagined_session
+    before = created(session)
+    pipeline_of(session, pool, {name: value}).imagination()
+    assert renewed(before, created(session)) == runs
 
 
 def test_an_interrupted_run_continues_where_it_stopped(session, pool):
     with pytest.raises(Cancelled):
         pipeline_of(session, pool, reporter=Recorder(stop_at="pouring")).imagination()
     kept = created(session)
-    assert list(kept) == ["scan", "reconstruction", "collision"]
+    assert list(kept) == ["scan", "reconstruction", "collision", "containability", "judgement", "amount"]
     again = Recorder()
     pipeline_of(session, pool, reporter=again).imagination()
     assert "reconstruction" not in again.stages
-    assert renewed(kept, created(session)) == ["containability", "pouring"]
+    assert renewed(kept, created(session)) == ["pouring", "risk"]
 
 
 def test_a_loaded_imagination_is_the_one_that_was_run(session, pool):
@@ -113,8 +149,8 @@ def test_a_loaded_imagination_is_the_one_that_was_run(session, pool):
     assert loaded.choice.T_world_cup == pytest.approx(run.choice.T_world_cup)
 
 
-def test_a_record_tells_what_a_stage_was_made_from(session, pool):
-    pipeline_of(session, pool).imagination()
+def test_a_record_tells_what_a_stage_was_made_from(imagined_session):
+    session = imagined_session
     record = json.loads((session.path / "containability" / "record.json").read_text())
     assert record["inputs"] == {"collision": session.record("collision").digest}
     assert record["parameters"]["seed"] == 0

@@ -11,7 +11,7 @@ from core.quality.next_views import DepthCamera
 from core.scan.model import CropBox, RgbdFrame, Scan
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH, SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, disturb_pose
-from hardware.simulation.objects.loft import turned
+from hardware.simulation.objects import turned
 from hardware.simulation.world import World
 from tests.ideal_rings import SCAN_RINGS, scan_views
 

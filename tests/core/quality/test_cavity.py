@@ -1,10 +1,13 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.quality.cavity import coarse_volume, find_hidden_cavity
 from core.reconstruction.tsdf import TsdfVolume
+from core.scan import CropBox
 from hardware.simulation.objects import builtin_object
 from tests.core.quality.studio import BOX, FEW_RINGS, PLATFORM_M, on_platform, upside_down
 
@@ -66,3 +69,11 @@ def test_a_gap_of_the_noise_is_no_cavity():
     volume = hand_made(unseen_below_m=0.0)
     volume.weight[14:16, 14:16, 10:11] = 0
     assert len(find_hidden_cavity(volume, platform_height_m=0.02).frontier_m) == 0
+
+
+def test_a_scan_is_fused_coarsely_once_for_each_box(mug_scan):
+    volume = coarse_volume(mug_scan, BOX)
+    assert coarse_volume(mug_scan, BOX) is volume
+    assert coarse_volume(replace(mug_scan), BOX) is not volume
+    smaller = CropBox(BOX.min_m, (BOX.max_m[0], BOX.max_m[1], BOX.max_m[2] - 0.1))
+    assert coarse_volume(mug_scan, smaller).weight.shape[2] < volume.weight.shape[2]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.geometry import look_at
-from core.quality.coverage import count_views, unseen_share
+from core.quality.verdict import count_views, unseen_share
 from hardware.simulation.objects import builtin_object
 from tests.core.quality.studio import PLATFORM_M, on_platform
 

@@ -10,18 +10,17 @@ from core.geometry import make_pose
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.quality.cavity import coarse_volume
-from core.quality.hidden_cavity import HiddenCavity
-from core.quality.measures import ScanQuality
-from core.quality.reasons import (
+from core.quality.measures import HiddenCavity, ScanQuality
+from core.quality.verdict import (
     HIDDEN_AREA_USABLE_M2,
     RESIDUAL_AGAIN_M,
     RESIDUAL_USABLE_M,
     TABLE_SD_AGAIN_M,
     TABLE_SD_USABLE_M,
     UNSEEN_USABLE,
+    assess,
     judge,
 )
-from core.quality.verdict import assess
 from core.quality.view_quality import ViewQuality
 from core.reconstruction.pose_health import PoseHealth
 from core.reconstruction.result import Reconstruction
@@ -90,7 +89,7 @@ def test_a_hidden_cavity_is_told_with_its_measures():
 def test_a_table_beside_its_known_place_is_told():
     shifted = tuple(replace(view, table_offset_m=-0.005) for view in views())
     verdict, reasons = judge(shifted, NOTHING, 0.0)
-    assert verdict == "usable" and "5.0 mm below its place" in reasons[0]
+    assert verdict == "usable" and "5.0 mm below its known height" in reasons[0]
 
 
 def test_the_worst_reason_comes_first():
@@ -120,7 +119,7 @@ def test_a_mug_well_scanned_is_good(mug_scan, tmp_path):
 def test_a_vase_asks_for_another_look(vase_scan, tmp_path):
     quality = assess(vase_scan, coarse_volume(vase_scan, BOX), reconstruct(vase_scan, COARSE, Reporter()))
     assert quality.verdict == "usable"
-    assert any("--adaptive" in reason for reason in quality.reasons)
+    assert any("look again" in reason for reason in quality.reasons)
     quality.save(tmp_path)
     again = ScanQuality.load(tmp_path).cavity
     assert np.array_equal(again.frontier_m, quality.cavity.frontier_m)

@@ -6,11 +6,16 @@ import numpy as np
 import pytest
 
 from core.geometry import make_pose
-from core.reconstruction.pose_health import measure_pose_health
-from core.reconstruction.stage import reconstruct
-from core.reconstruction.truncation import Truncation, choose_truncation, view_error_m
+from core.parameters.reconstruction import ReconstructionParameters
+from core.reconstruction.pose_health import PoseHealth, find_tables, pose_health_of
+from core.reconstruction.stage import Truncation, choose_truncation, reconstruct, view_error_m
+from core.scan import Scan, crop_box_of
 
 TABLE_M = 0.02
+
+
+def measure_pose_health(scan: Scan, parameters: ReconstructionParameters) -> PoseHealth:
+    return pose_health_of(scan, find_tables(scan, parameters), crop_box_of(scan, parameters))
 
 
 def test_right_poses_see_one_level_table(block_scan, parameters):

@@ -9,9 +9,8 @@ import trimesh
 from core.errors import SessionError
 from core.geometry import look_at
 from core.mesh import TriangleMesh
-from core.reconstruction.corrections import Refinement, ViewCorrection
 from core.reconstruction.pose_health import PoseHealth, ViewHealth
-from core.reconstruction.result import Reconstruction
+from core.reconstruction.result import Reconstruction, Refinement, ViewCorrection
 
 
 @pytest.fixture

@@ -46,7 +46,9 @@ def containability_of(positions_m: FloatArray, retained: FloatArray) -> Containa
     aabb = np.array([positions_m.min(axis=0) - margin, positions_m.max(axis=0) + margin])
     aabb[0, 2] = 0.03
     footprint = Footprint.of(positions_m[retained, :2], 0.08) if retained.any() else None
-    return Containability(0.0, positions_m, retained, aabb, footprint, no_recording(len(retained)))
+    return Containability(
+        positions_m, retained, aabb, footprint, no_recording(len(retained)), omega_threshold=0.0
+    )
 
 
 def pours_of(n_packings: int, n_directions: int = 8) -> PourGrid:

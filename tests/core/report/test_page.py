@@ -111,9 +111,9 @@ def test_missing_parts_say_why(bare_content: ReportContent) -> None:
     page = read(bare_content)
     for sentence in (
         "There are no pictures of the imagination",
-        "No pours were imagined because the object is no open container.",
-        "The mesh was given, not scanned",
-        "All are as in the preset “default”.",
+        "No pours were imagined because the object is not an open container.",
+        "The mesh was imported, not scanned",
+        "All parameters are those of the preset “default”.",
         "No times were recorded.",
         "some day",
     ):

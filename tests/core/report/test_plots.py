@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.retention.result import Retention
 from core.report import footprint_plot, pour_map
-from core.report.drawing import DARK, LIGHT
+from core.report.plots import DARK, LIGHT, retention_plot
 
 
 def pixels(png: bytes) -> NDArray[np.uint8]:
@@ -49,6 +50,17 @@ def test_footprint_of_a_single_candy(tray: Containability) -> None:
     kept[40] = True
     lonely = replace(tray, retained=kept, footprint=Footprint.of(tray.drop_positions_m[kept, :2], 0.08))
     assert len(pixels(footprint_plot(lonely))) > 500
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_retention_plot_shows_the_mean_and_the_worst_direction(dark: bool) -> None:
+    n_left = np.array([[20, 20, 15, 5]] * 7 + [[20, 10, 0, 0]])
+    tilts_rad = np.radians([0.0, 30.0, 60.0, 90.0])
+    png = retention_plot(Retention(24, 20, tilts_rad, np.arange(8) * np.pi / 4, n_left), dark=dark)
+    image, colors = pixels(png), DARK if dark else LIGHT
+    assert has_color(image, colors.kept)
+    assert has_color(image, colors.lost)
+    assert_nothing_is_cut(image, colors.background)
 
 
 @pytest.mark.parametrize("dark", [False, True])

@@ -3,18 +3,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.imagination.results import Containability, PourChoice, PourGrid
-from core.imagination.risk.results import PourRisk, joined
+from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk, joined
 from core.imagination.verdict import Verdict
 from core.report import (
     choice_sentence,
-    paper_verdict_sentence,
+    omega_verdict_sentence,
     pours_sentence,
     risk_sentence,
     tries_sentence,
+    verdict_reason,
     verdict_sentence,
+    verdict_summary,
+    verdict_words,
 )
-from core.report.sentences import direction_text
+from core.report.sentences import direction_text, percent
 
 
 def test_verdict(tray: Containability, block: Containability) -> None:
@@ -32,7 +34,7 @@ def test_a_verdict_by_capacity_says_what_it_holds_and_the_papers_stands_beside(t
         "Open container: it holds 137 candies (146 ml), 63 % of its convex hull; "
         "a container holds more than 10 %."
     )
-    assert paper_verdict_sentence(holds).startswith("By the paper's rule an open container: 146 of 308")
+    assert omega_verdict_sentence(holds).startswith("By Omega an open container: 146 of 308")
     lies_on = replace(tray, verdict=Verdict(0.034, 0.1, 47.0, 54.0, 23, 0.105))
     assert verdict_sentence(lies_on).replace("\u00a0", " ") == (
         "Not an open container: it holds 47 candies (54 ml), 3 % of its convex hull; "
@@ -47,7 +49,9 @@ def test_tries_say_how_sure_a_pour_is(pours: PourGrid, choice: PourChoice) -> No
     tries[choice.i][choice.j] = [0] * 13
     tries[7][2] = [0, 4, 2]
     risk = PourRisk(60, joined(tries))
-    assert risk_sentence(pours, risk, choice, choice).endswith("The paper's rule chooses the same.")
+    assert risk_sentence(pours, risk, choice, choice).endswith(
+        "The largest P alone (the paper's choice) is there, too."
+    )
     surest = tries_sentence(risk, choice.i, choice.j).replace("\u00a0", " ")
     assert "nothing was spilled, so it spills nothing in at least 81 %" in surest
     assert "in 1 of them, 2.0 of 60 candies on average" in tries_sentence(risk, 7, 2)
@@ -71,9 +75,9 @@ def test_choice(pours: PourGrid, one_direction: PourGrid, choice: PourChoice) ->
 
 def test_why_there_is_no_pour(tray: Containability, block: Containability, pours: PourGrid) -> None:
     assert pours_sentence(block, None, None) == (
-        "No pours were imagined because the object is no open container."
+        "No pours were imagined because the object is not an open container."
     )
-    assert "run the same command to continue" in pours_sentence(tray, None, None)
+    assert "have not been imagined yet" in pours_sentence(tray, None, None)
     assert pours_sentence(tray, pours, None) == "Pours were imagined but none was chosen."
 
 
@@ -82,3 +86,53 @@ def test_why_there_is_no_pour(tray: Containability, block: Containability, pours
 )
 def test_directions_are_whole_degrees(angle_rad: float, text: str) -> None:
     assert direction_text(angle_rad) == text
+
+
+@pytest.mark.parametrize(
+    ("verdict", "words"), [(True, "Open container"), (False, "Not a container"), (None, "No verdict yet")]
+)
+def test_the_verdict_in_two_or_three_words(verdict: bool | None, words: str) -> None:
+    assert verdict_words(verdict) == words
+
+
+@pytest.mark.parametrize(
+    ("facts", "said"),
+    [
+        (
+            (True, 0.4, 0.034, None, None),
+            "Open container: 40 % of the candies stayed; in a container more than 3.4 % stay.",
+        ),
+        (
+            (False, 0.4, 0.034, 0.05, 0.1),
+            "Not a container: it holds 5 % of its convex hull; a container holds more than 10 %.",
+        ),
+        ((None, None, None, None, None), "No verdict yet: nothing has been imagined."),
+    ],
+)
+def test_the_verdict_in_a_list_of_sessions(facts: tuple[float | None, ...], said: str) -> None:
+    assert verdict_summary(*facts).replace("\u00a0", " ") == said  # type: ignore[arg-type]
+
+
+def test_where_omega_decides_the_reason_says_what_had_to_stay(
+    tray: Containability, block: Containability
+) -> None:
+    assert verdict_reason(tray, 0).replace("\u00a0", " ") == (
+        "More than 0 % of the candies have to stay inside; 47 % did."
+    )
+    assert verdict_reason(block, 7).replace("\u00a0", " ") == (
+        "More than 0 % of the candies have to stay inside; not one of the 64 did. "
+        "7 lie on top, with no wall around them; the others fell past it or rolled off."
+    )
+    few = replace(block, retained=np.arange(block.n_drop) == 3, omega_threshold=0.03)
+    assert "only 1.6 % did. The others fell past it" in verdict_reason(few, 0).replace("\u00a0", " ")
+    assert verdict_reason(replace(tray, verdict=Verdict(0.6, 0.1, 137.2, 146.4, 24, 1.0)), 0) == (
+        omega_verdict_sentence(tray)
+    )
+
+
+@pytest.mark.parametrize(
+    ("share", "text"),
+    [(0, "0 %"), (0.03, "3 %"), (0.034, "3.4 %"), (0.004, "0.4 %"), (0.0001, "0.01 %"), (1, "100 %")],
+)
+def test_per_cent_have_the_decimals_they_need(share: float, text: str) -> None:
+    assert percent(share).replace("\u00a0", " ") == text

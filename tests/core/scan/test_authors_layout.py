@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, SessionError
-from core.geometry import AnyArray, rotation_error
+from core.geometry import AnyArray, make_pose, rotation_error
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.scan import CropBox, Scan, crop_box_of, read_scan, write_frame, write_scan
+from core.scan import CropBox, Scan, crop_box_of, read_scan, stored_scan, write_frame, write_scan
 
 
 def same(first: Scan, second: Scan) -> bool:
@@ -158,3 +158,13 @@ def test_a_copy_of_the_folder_is_the_same_scan(small_scan, folder, tmp_path_fact
     copy = tmp_path_factory.mktemp("copy") / "scan"
     shutil.copytree(folder, copy)
     assert same(read_scan(copy, Reporter()), small_scan)
+
+
+def test_a_stored_scan_is_decoded_once_until_a_file_changes(small_scan, folder, listener):
+    first = stored_scan(folder, listener)
+    assert same(first, small_scan)
+    assert stored_scan(folder, listener) is first
+    assert len(listener.steps) == len(first.frames)
+    shifted = replace(small_scan.frames[0], T_base_camera=make_pose(np.eye(3), [0.1, 0.2, 0.3]))
+    write_frame(shifted, folder)
+    assert stored_scan(folder, listener).frames[0].T_base_camera[0, 3] == 0.1

@@ -5,7 +5,7 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.session.digests import file_sizes, folder_digest
+from core.session.record import file_sizes, folder_digest
 
 NAMES = st.text("abc.", min_size=1, max_size=3).filter(lambda name: name.strip("."))
 CONTENTS = st.dictionaries(NAMES, st.binary(max_size=8), max_size=4)

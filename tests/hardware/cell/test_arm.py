@@ -14,7 +14,7 @@ from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.cell import SIMULATED_CELL, CellSettings, open_arm, read_cell
 from hardware.cell.examination import Finding, examine_cell
-from hardware.cell.scene import ARMS
+from hardware.cell.settings import ARMS
 from hardware.errors import RobotUnreachable
 from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.ur_controller.process import ControllerProcess

@@ -9,10 +9,10 @@ from core.errors import InputError
 from core.motion.kinematics import flange_pose
 from core.scan.model import RgbdFrame
 from hardware.cell import SIMULATED_CELL, Cell, open_cell, read_cell
-from hardware.cell.scene import ARMS
+from hardware.cell.settings import ARMS
 from hardware.errors import CameraLost
+from hardware.grippers.simulated import SimulatedGripper
 from hardware.interfaces import CameraImage
-from hardware.robots.simulated_gripper import SimulatedGripper
 from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.placing import world_with
@@ -77,9 +77,9 @@ def test_the_camera_hangs_at_the_flange_by_the_hand_eye_calibration(world: World
 
 
 def test_a_simulated_cell_needs_an_object_and_a_real_one_refuses_it(world: World) -> None:
-    with pytest.raises(InputError, match="--object mug"):
+    with pytest.raises(InputError, match="no object was chosen"):
         open_cell(SETTINGS)
-    with pytest.raises(InputError, match="leave out --object"):
+    with pytest.raises(InputError, match="not a chosen one"):
         open_cell(REAL, world)
 
 

@@ -7,11 +7,11 @@ from itertools import combinations, pairwise
 import numpy as np
 
 from core.geometry import FloatArray, invert_pose, transform_points
-from core.motion.joint_path import check_path
+from core.motion.joint_path import RouteSettings, check_path, find_route
 from core.motion.kinematics import flange_pose, within_limits
-from core.motion.route import RouteSettings, find_route
 from hardware.cell import read_cell
-from hardware.cell.scene import ARMS, motion_scene
+from hardware.cell.scene import motion_scene
+from hardware.cell.settings import ARMS
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH
 
 CELL = read_cell()

@@ -13,17 +13,17 @@ import numpy as np
 import psutil
 
 from core.errors import PoursightError
-from core.imagination.pouring import indentations_m, pivots_m, pour_directions_rad
+from core.imagination.pours import indentations_m, pivots_m, pour_directions_rad
 from core.imagination.results import Footprint
-from core.motion.pour.settings import MotionSettings
+from core.motion.pour.cell import MotionSettings
+from core.motion.pour.plan import PourTarget
 from core.parameters.imagination import PouringParameters
 from core.progress import Reporter
 from core.session.pour_runs import PourRun
 from hardware.cell import CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
-from hardware.errors import RobotError
-from hardware.pouring.pouring import Pouring, PourTarget
-from hardware.pouring.watching import refuse_unready
+from hardware.errors import RobotError, RobotLost
+from hardware.pouring.pouring import Pouring, refuse_unready
 from tests.awake import AwakeClock
 
 BOX_SIZE_M = np.array([0.12, 0.12, 0.07])
@@ -37,6 +37,7 @@ QUICK = MotionSettings(
     lift_m=0.06,
 )
 """A pour of a few seconds: what is tested is the stopping, not the patience."""
+MOST_BEGINNINGS = 3
 
 
 def quick_cell(speed_up: float, version: str) -> CellSettings:
@@ -70,10 +71,10 @@ class Rig:
         self.arm = open_arm(self.settings)
         self.arm.__enter__()
         self.controller = self.arm.controller
-        self.begin_anew()
+        self.begin_again()
         return self
 
-    def begin_anew(self) -> None:
+    def begin_again(self) -> None:
         self.reporter = Reporter()
         self.pouring = Pouring(
             self.arm, pour_cell(self.settings), a_target(self.settings), self.session, self.reporter
@@ -97,7 +98,7 @@ class Rig:
 
     @property
     def is_fit_for_the_next_test(self) -> bool:
-        """Whether the arm is home and takes moves: a failed test must not make those after it fail."""
+        """Whether the arm is home and accepts moves: a failed test must not make those after it fail."""
         with suppress(RobotError):
             refuse_unready(self.arm.robot.state())
             return self.is_home
@@ -108,25 +109,33 @@ class Rig:
         thread.start()
         return thread
 
-    def wait_for_move(self, name: str, share: float, thread: PourThread) -> None:
-        """Wait until a move is under way by about a share of its time."""
-        deadline_s = time.monotonic() + 60
-        while time.monotonic() < deadline_s and thread.is_alive():
-            if name in self._moves_begun(thread.run_before):
+    def pour_until(self, name: str, share: float) -> PourThread:
+        """Begin a pour and wait until about a share of a move's time has passed.
+
+        A machine that stands still for too long loses the arm, as it should; then the pour is begun again.
+        """
+        for _ in range(MOST_BEGINNINGS):
+            thread = self.pour_in_background()
+            while thread.is_alive() and name not in self._moves_started(thread.run_before):
+                time.sleep(0.005)
+            if thread.is_alive():
                 time.sleep(share * thread.duration_s(name) / self.speed_up)
-                return
-            time.sleep(0.005)
-        raise AssertionError(f"the move '{name}' never began: {thread.error!r}")
+                return thread
+            if not isinstance(thread.error, RobotLost):
+                break
+            self.pouring.recover()
+            self.pouring.back_off(self.pouring.plan_back_off())
+        raise AssertionError(f"the move '{name}' never started: {thread.error!r}")
 
     def seconds_to_rest(self) -> float:
         with AwakeClock() as clock:
-            began_s = clock.now_s()
+            started_s = clock.now_s()
             while self.is_moving:
-                assert clock.now_s() - began_s < 5, "the arm does not come to rest"
-            return clock.now_s() - began_s
+                assert clock.now_s() - started_s < 5, "the arm does not come to rest"
+            return clock.now_s() - started_s
 
-    def _moves_begun(self, run_before: Path | None) -> list[str]:
-        """Of the run under way: until it has a folder of its own, the newest one is an earlier run's."""
+    def _moves_started(self, run_before: Path | None) -> list[str]:
+        """Of the present run: until it has a folder of its own, the newest one is an earlier run's."""
         folder = self.pouring.last_run
         if folder is None or folder == run_before:
             return []
@@ -134,7 +143,7 @@ class Rig:
 
 
 class PourThread(threading.Thread):
-    """Plans and pours; keeps the error."""
+    """Plans and pours; stores the error."""
 
     def __init__(self, pouring: Pouring) -> None:
         super().__init__(daemon=True)

@@ -20,10 +20,13 @@ from hardware.errors import (
     TrackingLost,
 )
 from tests.hardware.pouring.rig import Rig, driver_pid
+from tests.patience import HANG_S
+
+pytestmark = pytest.mark.system
 
 pytest.importorskip("rtde_control")
 
-STANDS_WITHIN_S = 0.5
+AT_REST_WITHIN_S = 0.5
 FAULTS = {
     "protective stop": (ProtectiveStop, ()),
     "emergency stop": (EmergencyStop, ("emergency release",)),
@@ -35,7 +38,7 @@ FAULTS = {
     "stick 1 2 3 4 5 6": (TrackingLost, ("unstick",)),
 }
 POURED_AFTER = ("protective stop", "link drop", signal.SIGKILL)
-"""After these faults in the turn a whole pour follows; after all others the next test's pour is the proof."""
+"""After these faults while pouring a whole pour follows; after others the next test's pour is the proof."""
 PHASES = {"approach": ("to the cup", 0.5), "carry": ("carry", 0.5), "pour": ("pour", 0.4)}
 
 
@@ -48,7 +51,7 @@ def lasting(tmp_path_factory):
 
 @pytest.fixture
 def rig(lasting):
-    """The lasting one; begun anew only where a failed test left it on its way."""
+    """The lasting one; started again only where a failed test left the arm on its path."""
     yield lasting
     if not lasting.is_fit_for_the_next_test:
         lasting.__exit__(None, None, None)
@@ -59,20 +62,19 @@ def rig(lasting):
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_stops_the_arm_and_it_recovers_without_a_restart(rig, fault, phase):
     kind, repair = FAULTS[fault]
-    thread = rig.pour_in_background()
-    rig.wait_for_move(*PHASES[phase], thread)
+    thread = rig.pour_until(*PHASES[phase])
     rig.controller.command(fault)
-    stood_after_s = rig.seconds_to_rest()
-    thread.join(10)
+    rested_after_s = rig.seconds_to_rest()
+    thread.join(HANG_S)
 
-    assert stood_after_s < STANDS_WITHIN_S
+    assert rested_after_s < AT_REST_WITHIN_S
     assert isinstance(thread.error, kind), repr(thread.error)
-    is_told(thread.error)
-    nothing_goes_on(rig)
+    is_explained(thread.error)
+    nothing_continues(rig)
     session_is_intact(rig)
     for line in repair:
         rig.controller.command(line)
-    nothing_goes_on(rig)
+    nothing_continues(rig)
     recovers(rig)
     if phase == "pour" and fault in POURED_AFTER:
         pours(rig)
@@ -81,28 +83,27 @@ def test_a_fault_stops_the_arm_and_it_recovers_without_a_restart(rig, fault, pha
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP])
 def test_a_driver_that_dies_or_freezes_stops_the_arm(rig, number, phase):
-    thread = rig.pour_in_background()
-    rig.wait_for_move(*PHASES[phase], thread)
+    thread = rig.pour_until(*PHASES[phase])
     os.kill(driver_pid(), number)
-    stood_after_s = rig.seconds_to_rest()
-    thread.join(10)
+    rested_after_s = rig.seconds_to_rest()
+    thread.join(HANG_S)
 
-    assert stood_after_s < STANDS_WITHIN_S
+    assert rested_after_s < AT_REST_WITHIN_S
     assert isinstance(thread.error, RobotError), repr(thread.error)
-    is_told(thread.error)
-    nothing_goes_on(rig)
+    is_explained(thread.error)
+    nothing_continues(rig)
     session_is_intact(rig)
     recovers(rig)
     if phase == "pour" and number in POURED_AFTER:
         pours(rig)
 
 
-def test_a_cup_that_is_being_taken_is_left_at_its_station(rig):
+def test_a_cup_that_is_being_grasped_is_left_at_its_station(rig):
     thread = rig.pour_in_background()
     while thread.is_alive() and not rig.arm.gripper.is_closed:
         time.sleep(0.005)
     os.kill(driver_pid(), signal.SIGKILL)
-    thread.join(10)
+    thread.join(HANG_S)
     assert isinstance(thread.error, RobotError), repr(thread.error)
     recovers(rig)
     pours(rig)
@@ -112,7 +113,7 @@ def test_a_slow_link_costs_time_and_nothing_else(rig):
     rig.controller.command("latency 20 20")
     try:
         thread = rig.pour_in_background()
-        thread.join(60)
+        thread.join(HANG_S)
     finally:
         rig.controller.command("link restore")
     assert thread.error is None
@@ -120,23 +121,21 @@ def test_a_slow_link_costs_time_and_nothing_else(rig):
 
 
 def test_somebody_who_cancels_stops_the_arm(rig):
-    thread = rig.pour_in_background()
-    rig.wait_for_move("carry", 0.5, thread)
+    thread = rig.pour_until("carry", 0.5)
     rig.reporter.cancel()
-    assert rig.seconds_to_rest() < STANDS_WITHIN_S
-    thread.join(10)
+    assert rig.seconds_to_rest() < AT_REST_WITHIN_S
+    thread.join(HANG_S)
     assert type(thread.error).__name__ == "Cancelled"
-    nothing_goes_on(rig)
+    nothing_continues(rig)
     rig.reporter.forget_cancel()
     recovers(rig)
 
 
 def test_emergency_stop_that_is_still_pressed_and_local_control_are_named_on_recovery(tmp_path):
     with Rig(tmp_path, version="5.11") as rig:
-        thread = rig.pour_in_background()
-        rig.wait_for_move("carry", 0.3, thread)
+        thread = rig.pour_until("carry", 0.3)
         rig.controller.command("emergency stop")
-        thread.join(10)
+        thread.join(HANG_S)
         with pytest.raises(EmergencyStop, match="release"):
             rig.pouring.recover()
         rig.controller.command("emergency release")
@@ -147,14 +146,14 @@ def test_emergency_stop_that_is_still_pressed_and_local_control_are_named_on_rec
         recovers(rig)
 
 
-def is_told(error):
+def is_explained(error):
     """One sentence: what happened and what to do."""
     assert len(str(error)) > 40
     assert "\n" not in str(error)
     assert any(word in str(error) for word in (";", ":")), str(error)
 
 
-def nothing_goes_on(rig):
+def nothing_continues(rig):
     before = rig.joints_rad
     time.sleep(0.3)
     assert not rig.is_moving
@@ -171,7 +170,7 @@ def session_is_intact(rig):
 
 def recovers(rig):
     rig.pouring.recover()
-    nothing_goes_on(rig)
+    nothing_continues(rig)
     rig.pouring.back_off(rig.pouring.plan_back_off())
     assert rig.is_home
     assert not rig.arm.gripper.is_closed

@@ -13,11 +13,12 @@ from core.motion.pour.plan import PourPlan
 from core.progress import Reporter
 from core.session.pour_runs import PourRun, pour_runs
 from hardware.cell import Arm
-from hardware.cell.scene import ARMS, motion_scene, pour_cell
+from hardware.cell.scene import motion_scene, pour_cell
+from hardware.cell.settings import ARMS
 from hardware.errors import DeviceError, TrackingLost
-from hardware.pouring.pouring import Pouring
+from hardware.grippers.simulated import SimulatedGripper
+from hardware.pouring.pouring import Pouring, refuse_deviation
 from hardware.robots.kinematic import KinematicRobot
-from hardware.robots.simulated_gripper import SimulatedGripper
 from tests.hardware.pouring.rig import a_target, quick_cell
 
 SETTINGS = quick_cell(1.0, "3.15")
@@ -45,12 +46,12 @@ def nothing_moved(arm, session):
 def test_a_whole_pour(fresh_plan, tmp_path):
     arm = an_arm()
     run = a_pouring(arm, tmp_path).carry_out(fresh_plan)
-    told = PourRun.load(run)
-    assert told.is_done
-    assert [event["name"] for event in told.events if event["kind"] == "move"] == [
+    logged = PourRun.load(run)
+    assert logged.is_done
+    assert [event["name"] for event in logged.events if event["kind"] == "move"] == [
         move.name for move in fresh_plan.plan.moves
     ]
-    grips = [event["is_closed"] for event in told.events if event["kind"] == "gripper"]
+    grips = [event["is_closed"] for event in logged.events if event["kind"] == "gripper"]
     assert grips == [True, False]
     assert PourPlan.load(run / "plan").digest == fresh_plan.plan.digest
     assert arm.robot.state().joints_rad == pytest.approx(HOME)
@@ -59,7 +60,7 @@ def test_a_whole_pour(fresh_plan, tmp_path):
 def test_a_plan_expires(fresh_plan, tmp_path):
     arm = an_arm()
     old = replace(fresh_plan, made_s=time.monotonic() - SETTINGS.motion.expires_s - 1)
-    with pytest.raises(MotionError, match="expired; plan anew"):
+    with pytest.raises(MotionError, match="expired; plan again"):
         a_pouring(arm, tmp_path).carry_out(old)
     assert nothing_moved(arm, tmp_path)
 
@@ -75,7 +76,7 @@ def test_a_closed_gripper_may_hold_a_cup_that_no_plan_knows_of(tmp_path):
 def test_a_plan_for_another_imagination_is_refused(fresh_plan, tmp_path):
     arm = an_arm()
     other = replace(a_target(SETTINGS), digest="another imagination")
-    with pytest.raises(MotionError, match="imagined anew"):
+    with pytest.raises(MotionError, match="imagined again"):
         a_pouring(arm, tmp_path, other).carry_out(fresh_plan)
     assert nothing_moved(arm, tmp_path)
 
@@ -147,11 +148,9 @@ def test_an_arm_that_was_pushed_after_a_stop_is_not_driven_back(fresh_plan, tmp_
         pouring.plan_back_off()
 
 
-def test_an_arm_beside_its_way_is_stopped(fresh_plan):
-    from hardware.pouring.watching import refuse_deviation
-
+def test_an_arm_off_its_path_is_stopped(fresh_plan):
     trajectory = fresh_plan.plan.moves[3].trajectory
     state = an_arm().robot.state()
     refuse_deviation(replace(state, joints_rad=trajectory.joints_rad[50] + 0.03), trajectory)
-    with pytest.raises(TrackingLost, match="beside its planned way"):
+    with pytest.raises(TrackingLost, match="off its planned path"):
         refuse_deviation(replace(state, joints_rad=trajectory.joints_rad[50] + 0.3), trajectory)

@@ -1,4 +1,4 @@
-"""A run is on the disk as it happens, and is told from there."""
+"""A run is on the disk as it happens, and is read from there."""
 
 import numpy as np
 import pytest

@@ -8,8 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from core.geometry import FloatArray
-from hardware.robots.joint_motion import JointMotion
-from hardware.robots.trapezoid import Trapezoid
+from hardware.robots.joint_motion import JointMotion, Trapezoid
 
 SPEED, ACCELERATION = 0.8, 1.2
 SLACK = 1e-9

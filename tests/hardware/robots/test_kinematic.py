@@ -12,9 +12,9 @@ from core.motion.arm_models import UR5
 from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
+from hardware.grippers.simulated import SimulatedGripper
 from hardware.interfaces import RobotState
 from hardware.robots.kinematic import KinematicRobot
-from hardware.robots.simulated_gripper import SimulatedGripper
 
 HOME = np.array([0.0, -1.5, -0.6, -2.25, 1.5, 0.7])
 NEAR = HOME + np.array([0.4, -0.2, 0.1, 0.0, 0.3, -0.1])
@@ -91,7 +91,7 @@ def test_stopped_on_its_way_it_slows_down_without_a_jump(by: str) -> None:
     assert 0 < share[0] < 1
     assert move.is_done
     assert move.progress < 1
-    with pytest.raises(RobotStopped, match="was stopped on its way"):
+    with pytest.raises(RobotStopped, match="was stopped before it arrived"):
         move.wait(1.0)
 
 

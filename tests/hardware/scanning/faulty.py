@@ -13,9 +13,8 @@ from core.progress import Reporter
 from hardware.cell import Cell, CellSettings, open_cell, read_cell
 from hardware.errors import CameraError, CameraLost
 from hardware.interfaces import Camera, CameraImage, Move, Robot, RobotState
-from hardware.scanning.control import ScanControl
-from hardware.scanning.keeping import ScanKeeper
-from hardware.scanning.procedure import ScanProcedure, ViewTaken
+from hardware.scanning.procedure import ScanControl, ScanProcedure, ViewTaken
+from hardware.scanning.store import ScanStore
 from hardware.scanning.views import PlannedView, name_views
 from hardware.simulation.world import World
 
@@ -203,9 +202,9 @@ def scan_into(
     settings = settings or small_cell()
     cell = open_cell(settings, world, SEED)
     change(cell)
-    keeper = None if folder is None else ScanKeeper(folder, ORIGIN)
+    store = None if folder is None else ScanStore(folder, ORIGIN)
     with cell:
-        procedure = ScanProcedure(cell, keeper, reporter or Listening(), control, taken)
+        procedure = ScanProcedure(cell, store, reporter or Listening(), control, taken)
         procedure.take(planned(settings))
     return procedure
 

@@ -17,9 +17,9 @@ import pytest
 from core.errors import SessionError
 from core.scan.model import RgbdFrame
 from hardware.cell import Cell, open_cell
-from hardware.scanning import keeping
-from hardware.scanning.keeping import ScanKeeper, read_views
+from hardware.scanning import store
 from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.store import ScanStore, read_views
 from hardware.scanning.views import ViewState
 from hardware.simulation.world import World
 from tests.hardware.scanning.faulty import (
@@ -33,6 +33,8 @@ from tests.hardware.scanning.faulty import (
     scan_into,
     small_cell,
 )
+
+pytestmark = pytest.mark.system
 
 VIEWS = 4
 
@@ -89,9 +91,9 @@ def test_ended_between_the_images_and_the_note_that_all_are_told(
 ) -> None:
     """The view is noted with its images already, in its place."""
 
-    class Ending(ScanKeeper):
-        def keep(self, frame: RgbdFrame, *rest) -> None:
-            super().keep(frame, *rest)
+    class Ending(ScanStore):
+        def write_view(self, frame: RgbdFrame, *rest) -> None:
+            super().write_view(frame, *rest)
             if frame.name == "frame-000001":
                 raise Interrupted
 
@@ -147,12 +149,12 @@ def test_views_of_another_scan_are_refused(world: World, tmp_path: Path) -> None
     with open_cell(small_cell(), world, SEED) as cell:
         for other in ({"object": "bowl", "seed": 3}, {"object": "mug", "seed": 4}, {}):
             with pytest.raises(
-                SessionError, match=r"holds views of another scan \(2, .* --restart"
+                SessionError, match=r"holds views of another scan \(2, .* discard them"
             ) as refused:
-                ScanProcedure(cell, ScanKeeper(tmp_path, other), Listening())
+                ScanProcedure(cell, ScanStore(tmp_path, other), Listening())
             assert str(tmp_path) in str(refused.value)
     assert contents(tmp_path) == before
-    ScanKeeper(tmp_path, ORIGIN).remove()
+    ScanStore(tmp_path, ORIGIN).remove()
     assert not tmp_path.exists()
 
 
@@ -238,7 +240,7 @@ def test_a_full_disk_keeps_what_was_taken(small_disk, world: World, undisturbed:
 def test_a_disk_that_is_full_at_one_view(
     monkeypatch: pytest.MonkeyPatch, world: World, tmp_path: Path, undisturbed: dict[str, bytes]
 ) -> None:
-    write_frame = keeping.write_frame
+    write_frame = store.write_frame
 
     def full(frame: RgbdFrame, folder: Path) -> None:
         if frame.name == "frame-000003":
@@ -246,7 +248,7 @@ def test_a_disk_that_is_full_at_one_view(
         write_frame(frame, folder)
 
     with monkeypatch.context() as patch:
-        patch.setattr(keeping, "write_frame", full)
+        patch.setattr(store, "write_frame", full)
         with pytest.raises(SessionError, match="is full"):
             scan_into(tmp_path, world)
     _, n_captures = continue_scan(tmp_path, world)
@@ -255,10 +257,10 @@ def test_a_disk_that_is_full_at_one_view(
 
 
 def test_publishing_copies_everything(world: World, tmp_path: Path, undisturbed: dict[str, bytes]) -> None:
-    keeper = ScanKeeper(tmp_path / "scan", ORIGIN)
-    scan_into(keeper.folder, world)
+    store = ScanStore(tmp_path / "scan", ORIGIN)
+    scan_into(store.folder, world)
     (tmp_path / "stage").mkdir()
-    keeper.publish(tmp_path / "stage")
+    store.publish(tmp_path / "stage")
     assert contents(tmp_path / "stage") == undisturbed
     shutil.rmtree(tmp_path / "stage")
-    assert contents(keeper.folder) == undisturbed
+    assert contents(store.folder) == undisturbed

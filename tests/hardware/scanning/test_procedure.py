@@ -20,9 +20,8 @@ from core.scan import read_scan
 from core.scan.model import RgbdFrame
 from hardware.cell import Cell, open_cell
 from hardware.errors import RobotStopped
-from hardware.scanning.control import ScanControl
-from hardware.scanning.keeping import ScanKeeper, read_views
-from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.procedure import ScanControl, ScanProcedure
+from hardware.scanning.store import ScanStore, read_views
 from hardware.scanning.views import ViewRecord, ViewState
 from hardware.simulation.world import World
 from tests.hardware.scanning.faulty import (
@@ -35,6 +34,7 @@ from tests.hardware.scanning.faulty import (
     scan_into,
     small_cell,
 )
+from tests.patience import wait_until
 
 VIEWS = 4
 
@@ -124,7 +124,7 @@ def test_too_few_views_are_no_scan(world: World) -> None:
 def test_a_single_view_is_taken_again(world: World, tmp_path: Path) -> None:
     settings = small_cell()
     with open_cell(settings, world, SEED) as cell:
-        procedure = ScanProcedure(cell, ScanKeeper(tmp_path, ORIGIN), Listening())
+        procedure = ScanProcedure(cell, ScanStore(tmp_path, ORIGIN), Listening())
         procedure.take(planned(settings))
         before, old_mesh = contents(tmp_path), procedure.volume.mesh()
         old = procedure.scan().frames
@@ -188,7 +188,7 @@ def test_stopped_in_mid_move_the_arm_stands_and_the_next_run_continues(
     """The first view at once, then by the clock."""
     settings = small_cell()
     with open_cell(settings, world, SEED) as cell:
-        first = ScanProcedure(cell, ScanKeeper(tmp_path, ORIGIN), Listening())
+        first = ScanProcedure(cell, ScanStore(tmp_path, ORIGIN), Listening())
         first.take(planned(settings)[:1])
 
     reporter = Listening()
@@ -201,7 +201,7 @@ def test_stopped_in_mid_move_the_arm_stands_and_the_next_run_continues(
             Timer(0.4, ask).start()
 
         cell.robot = WatchedRobot(arm, begun=stop)
-        procedure = ScanProcedure(cell, ScanKeeper(tmp_path, ORIGIN), reporter)
+        procedure = ScanProcedure(cell, ScanStore(tmp_path, ORIGIN), reporter)
         began_s = time.monotonic()
         with pytest.raises(Cancelled if how == "cancel" else KeyboardInterrupt):
             procedure.take(planned(slow))
@@ -222,7 +222,7 @@ def test_an_arm_that_somebody_stops_ends_the_scan(world: World) -> None:
     with open_cell(slow, world, SEED) as cell:
         arm = cell.robot
         cell.robot = WatchedRobot(arm, begun=lambda _: Timer(0.3, arm.stop).start())
-        with pytest.raises(RobotStopped, match="was stopped on its way"):
+        with pytest.raises(RobotStopped, match="was stopped before it arrived"):
             ScanProcedure(cell, None, Listening()).take(planned(slow))
 
 
@@ -233,10 +233,3 @@ def test_by_the_clock_the_images_are_the_same(world: World, tmp_path: Path) -> N
     scan_into(tmp_path / "instant", world, settings=small_cell(chosen))
     scan_into(tmp_path / "clock", world, settings=clock.model_copy(update={"robot": swift}))
     assert contents(tmp_path / "clock") == contents(tmp_path / "instant")
-
-
-def wait_until(condition) -> None:
-    deadline_s = time.monotonic() + 20
-    while not condition():
-        assert time.monotonic() < deadline_s
-        time.sleep(0.01)

@@ -46,7 +46,7 @@ def test_each_seed_places_it_elsewhere_and_the_same_one_there_again() -> None:
 
 def test_an_object_too_large_for_the_cell_is_a_sentence() -> None:
     block = builtin_object("block")
-    with pytest.raises(InputError, match=r"600 x 400 x 300 mm does not fit .* room for 460 x 380 x 260 mm"):
+    with pytest.raises(InputError, match=r"600 x 400 x 300 mm does not fit .* space for 460 x 380 x 260 mm"):
         place_on_platform(TriangleMesh(block.vertices_m * 5, block.faces), 0, PLACE)
 
 

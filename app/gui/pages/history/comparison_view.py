@@ -6,13 +6,12 @@ from functools import cache
 from itertools import groupby
 
 from PySide6.QtCore import QCoreApplication, QEvent, Qt, Signal
-from PySide6.QtGui import QFont, QKeySequence, QPixmap, QResizeEvent, QShortcut
+from PySide6.QtGui import QFont, QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QCheckBox,
     QHBoxLayout,
     QHeaderView,
-    QLabel,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -21,8 +20,9 @@ from PySide6.QtWidgets import (
 from typing_extensions import override
 
 from app.gui.desk.stage_words import stage_words
-from app.gui.pages.history.card_painter import CardFace
+from app.gui.pages.history.cards import CardList
 from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.labels import text_label
 from app.gui.views.painting import make_bare, tabular
 from app.gui.views.parameter_editor.naming import group_title, titles
 from app.library.compare import Comparison, Row
@@ -37,57 +37,47 @@ _DIFFERS, _SAME = "≠", "="
 class ComparisonView(QWidget):
     """Shows a `Comparison`.
 
-    Signals: `left` when Escape says that the user has seen enough.
+    Signals: `left` when the user pressed Escape.
+
+    Attributes:
+        comparison: what is shown; none at first.
+        cards: the two sessions.
     """
 
     left = Signal()
 
     def __init__(self) -> None:
         super().__init__()
-        self.setObjectName("comparison")
-        self._comparison: Comparison | None = None
-        self._a, self._b = CardFace("card_a"), CardFace("card_b")
+        self.comparison: Comparison | None = None
+        self.cards = CardList(n_columns=2)
+        self.cards.setObjectName("compared_cards")
+        self.cards.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
+        self.cards.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.cards.setFixedHeight(self.cards.card_height_px)
         self._table = _table()
         column = QVBoxLayout(self)
         column.setContentsMargins(2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX, 0)
         column.setSpacing(GRID_PX)
         column.addLayout(self._build_head())
-        faces = QHBoxLayout()
-        faces.setSpacing(GRID_PX)
-        faces.addWidget(self._a)
-        faces.addWidget(self._b)
-        column.addLayout(faces)
+        column.addWidget(self.cards)
         column.addWidget(self._table, 1)
 
-    @property
-    def comparison(self) -> Comparison | None:
-        """What is shown."""
-        return self._comparison
-
     def show_comparison(self, comparison: Comparison) -> None:
-        """Show two sessions, as yet without pictures."""
-        self._comparison = comparison
+        """Show two sessions."""
+        self.comparison = comparison
+        self.cards.show_sessions((comparison.a, comparison.b))
         n = sum(not row.is_same for row in comparison.rows)
-        self._said.setText(
-            self.tr("{n} of {all} lines differ ({mark})").format(n=n, all=len(comparison.rows), mark=_DIFFERS)
-        )
+        said = self.tr("{n} of {all} lines differ ({mark})")
+        self._count.setText(said.format(n=n, all=len(comparison.rows), mark=_DIFFERS))
         self._fill()
 
-    def show_pictures(self, a: QPixmap | None, b: QPixmap | None) -> None:
-        """Show the two cards with what pictures there are by now."""
-        if self._comparison is not None:
-            self._a.show_session(self._comparison.a, a)
-            self._b.show_session(self._comparison.b, b)
-
     def _build_head(self) -> QHBoxLayout:
-        title = QLabel(self.tr("Two sessions compared"))
-        title.setProperty("role", "title")
-        self._said = QLabel()
-        self._said.setObjectName("comparison_count")
-        self._said.setProperty("role", "muted")
+        title = text_label("", "title", self.tr("Two sessions compared"))
+        title.setWordWrap(False)
+        self._count = text_label("comparison_count", "muted")
         self._only = QCheckBox(self.tr("Only differences"))
         self._only.setObjectName("only_differences")
-        self._only.setToolTip(self.tr("Hide what is the same in both sessions."))
+        self._only.setToolTip(self.tr("Hide what is the same in both sessions"))
         self._only.toggled.connect(lambda _: self._fill())
         leave = QShortcut(QKeySequence(QKeySequence.StandardKey.Cancel), self)
         leave.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
@@ -95,16 +85,16 @@ class ComparisonView(QWidget):
         row = QHBoxLayout()
         row.setSpacing(2 * GRID_PX)
         row.addWidget(title)
-        row.addWidget(self._said, 1)
+        row.addWidget(self._count, 1)
         row.addWidget(self._only)
         return row
 
     def _fill(self) -> None:
-        comparison = self._comparison
+        comparison = self.comparison
         if comparison is None:
             return
         names = [comparison.a.name, comparison.b.name]
-        if names[0] == names[1]:  # the folders tell them apart
+        if names[0] == names[1]:  # the folders differ
             names = [comparison.a.path.name, comparison.b.path.name]
         self._table.setHorizontalHeaderLabels(["", "", *names, self.tr("Difference")])
         rows = [row for row in comparison.rows if not (self._only.isChecked() and row.is_same)]
@@ -117,7 +107,7 @@ class ComparisonView(QWidget):
         self._fit()
 
     def _fit(self) -> None:
-        """Leave the values most of the room."""
+        """Leave most of the width to the values."""
         most_px = round(_MOST_SHARE * self._table.viewport().width())
         self._table.setColumnWidth(WHAT, min(self._table.sizeHintForColumn(WHAT), most_px))
         self._table.resizeRowsToContents()
@@ -131,23 +121,20 @@ class ComparisonView(QWidget):
     def _add_row(self, row: Row) -> None:
         number = self._table.rowCount()
         self._table.insertRow(number)
-        theme = theme_of(self)
-        mark = _item(
-            _SAME if row.is_same else _DIFFERS, tabular(self.font()) if row.is_same else self._bold()
-        )
-        mark.setTextAlignment(Qt.AlignmentFlag.AlignCenter)
-        mark.setForeground(theme.color("muted" if row.is_same else "accent"))
-        mark.setToolTip(self.tr("the same in both") if row.is_same else self.tr("differs"))
-        self._table.setItem(number, MARK, mark)
-        for column, text in (
-            (WHAT, _what_words(row)),
-            (A, row.a),
-            (B, row.b),
-            (DIFFERENCE, row.difference),
+        theme, font = theme_of(self), tabular(self.font())
+        mark_font = font if row.is_same else self._bold()
+        same = self.tr("the same in both") if row.is_same else self.tr("differs")
+        value_ink = "muted" if row.is_same else "text"
+        for column, text, tip, ink in (
+            (WHAT, _what_words(row), _explained(row), "muted"),
+            (MARK, _SAME if row.is_same else _DIFFERS, same, "muted" if row.is_same else "accent"),
+            (A, row.a, row.a, value_ink),
+            (B, row.b, row.b, value_ink),
+            (DIFFERENCE, row.difference, row.difference, value_ink),
         ):
-            item = _item(text, tabular(self.font()))
-            item.setForeground(theme.color("muted" if row.is_same or column == WHAT else "text"))
-            item.setToolTip(_explained(row) if column == WHAT else text)
+            item = _item(text, mark_font if column == MARK else font)
+            item.setForeground(theme.color(ink))
+            item.setToolTip(tip)
             self._table.setItem(number, column, item)
 
     def _bold(self) -> QFont:
@@ -168,7 +155,9 @@ class ComparisonView(QWidget):
 def _table() -> QTableWidget:
     table = QTableWidget(0, DIFFERENCE + 1)
     table.setObjectName("comparison_table")
-    table.setAccessibleName(QCoreApplication.translate("History", "What the two sessions share and do not"))
+    table.setAccessibleName(
+        QCoreApplication.translate("History", "What the two sessions share, and what differs")
+    )
     table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
     table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
     table.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -204,7 +193,7 @@ def _group_words(group: str) -> str:
         "Object": translate("History", "Object"),
         "Imagination": translate("History", "Imagination"),
         "Pour": translate("History", "Pour"),
-        "Time": translate("History", "Time that each step took"),
+        "Time": translate("History", "Time each step took"),
         "Parameters": translate("History", "Parameters"),
     }
     return words.get(group, group)

@@ -7,23 +7,28 @@ from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtGui import QHideEvent
-from PySide6.QtWidgets import QLabel, QStackedWidget, QVBoxLayout
+from PySide6.QtWidgets import QStackedWidget, QVBoxLayout
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
-from app.gui.pages.history.asides import Notice, TrashBox, open_folder
+from app.gui.pages.history import words
 from app.gui.pages.history.comparison_view import ComparisonView
-from app.gui.pages.history.exports import ExportKind, ask_archive, ask_target, documents_folder
-from app.gui.pages.history.list_view import ListView
-from app.gui.pages.history.session_part import SessionPart
-from app.gui.pages.history.shelf import Found, Shelf
-from app.gui.pages.history.words import origin_words, results_page, verdict_words
+from app.gui.pages.history.library_view import Found, LibraryView, Shelf
+from app.gui.pages.history.session_side import (
+    ExportKind,
+    Notice,
+    SessionPart,
+    TrashBox,
+    ask_archive,
+    ask_target,
+    documents_folder,
+)
 from app.gui.pages.page import Page, SidePanel, SplitView
+from app.gui.views.labels import say, text_label
 from app.jobs.library_work import LibraryWork
 from app.library.compare import Comparison, compare
+from app.library.index import send_to_trash
 from app.library.summary import SessionSummary
-from app.library.trash import send_to_trash
-from core.errors import PoursightError
 
 
 class HistoryPage(Page):
@@ -37,15 +42,13 @@ class HistoryPage(Page):
         self._shelf = Shelf(desk.background, self)
         self._exports_to = documents_folder()
         self._to_select: Path | None = None
-        self._list = ListView()
+        self._list = LibraryView()
         self._comparison = ComparisonView()
         self._left = QStackedWidget()
         self._left.addWidget(self._list)
         self._left.addWidget(self._comparison)
         self._session = SessionPart()
-        self._remark = QLabel()
-        self._remark.setObjectName("remark")
-        self._remark.setWordWrap(True)
+        self._remark = text_label("remark")
         self._trash, self._notice = TrashBox(), Notice()
         self._side = SidePanel(self.tr("Open session"))
         for widget in (self._remark, self._session, self._trash, self._notice):
@@ -60,17 +63,16 @@ class HistoryPage(Page):
 
     def _connect(self) -> None:
         self._shelf.found.connect(self._show_found)
-        self._shelf.pictured.connect(self._list.cards.cards.set_picture)
+        for cards in (self._list.cards, self._comparison.cards):
+            self._shelf.pictured.connect(cards.sessions.set_picture)
         self._list.searched.connect(self._shelf.search)
         self._list.import_wanted.connect(self._ask_archive)
         self._list.start_wanted.connect(self._start)
         self._list.cards.chosen.connect(self._on_chosen)
         self._list.cards.wanted.connect(self.open_session)
-        self._list.cards.cards.pictured.connect(self._show_pictures)
         self._comparison.left.connect(self._leave_comparison)
         self._session.export_wanted.connect(self._ask_target)
         self._session.compare_wanted.connect(self._compare_with_open)
-        self._session.folder_wanted.connect(self._open_folder)
         self._session.forget_wanted.connect(self._forget)
         self._session.trash_wanted.connect(self._ask_trash)
         self._trash.agreed.connect(self.delete)
@@ -137,29 +139,20 @@ class HistoryPage(Page):
         selected, is_idle = self.selected, self.desk.jobs.is_idle
         one = selected[0] if len(selected) == 1 and not self._is_comparing else None
         self._session.setVisible(one is not None)
-        self._remark.setVisible(one is None)
         if one is not None:
-            self._show_one(one, is_idle)
-        else:
-            self._remark.setText(self._remark_words(selected))
+            open_folder = self.desk.workspace.folder
+            self._session.show_session(
+                one,
+                is_elsewhere=one.path.parent != self._shelf.root,
+                can_compare=not one.problem and open_folder not in (None, one.path),
+                is_idle=is_idle,
+            )
+        say(self._remark, "" if one is not None else self._remark_words(selected))
         self._trash.set_can_agree(is_idle)
         self._list.set_can_import(is_idle)
         text, is_enabled = self._primary_state(selected, is_idle)
         self._side.primary.setText(text)
         self._side.primary.setEnabled(is_enabled)
-
-    def _show_one(self, session: SessionSummary, is_idle: bool) -> None:
-        open_folder = self.desk.workspace.folder
-        is_fine = not session.problem
-        can_compare = is_fine and open_folder is not None and open_folder != session.path
-        self._session.show_session(session, is_elsewhere=session.path.parent != self._shelf.root)
-        self._session.set_can(
-            export=is_idle and is_fine,
-            report="containability" in session.stages,
-            compare=can_compare,
-            change=is_idle,
-            hint=self.tr("Hold Ctrl and click a second card to compare two sessions."),
-        )
 
     @property
     def _is_comparing(self) -> bool:
@@ -168,30 +161,29 @@ class HistoryPage(Page):
     def _remark_words(self, selected: list[SessionSummary]) -> str:
         if self._is_comparing:
             return self.tr(
-                "Each line is one thing that both sessions are asked for. The last column tells what changes "
+                "Each line compares one property of the two sessions. The last column shows what changes "
                 "from the left session to the right one."
             )
         if not selected:
-            return self.tr("Select a session to see what is known of it.")
+            return self.tr("Select a session to see its details.")
         if len(selected) > 2:
             return self.tr(
-                "{n} sessions are selected. Select one to see what is known of it, or two to compare them."
+                "{n} sessions are selected. Select one to see its details, or two to compare them."
             ).format(n=len(selected))
         bad = next((session for session in selected if session.problem), None)
         if bad is not None:
             return self.tr("{name} cannot be read, so it cannot be compared.").format(name=bad.name)
-        return self.tr("Two sessions are selected:\n\n{a}\n\n{b}").format(
-            a=_told(selected[0]), b=_told(selected[1])
-        )
+        both = "\n\n".join(words.spoken(session) for session in selected)
+        return self.tr("Two sessions are selected:\n\n{both}").format(both=both)
 
     def _primary_state(self, selected: list[SessionSummary], is_idle: bool) -> tuple[str, bool]:
         """What the primary button does, and whether it can be done now."""
         if self._is_comparing:
-            return self.tr("Back to the sessions"), True
+            return self.tr("Back to sessions"), True
         if len(selected) == 2:
             return self.tr("Compare"), not any(session.problem for session in selected)
         if len(selected) == 1 and selected[0].path == self.desk.workspace.folder:
-            return self.tr("Show its results"), True
+            return self.tr("Show results"), True
         can_open = len(selected) == 1 and not selected[0].problem and is_idle
         return self.tr("Open session"), can_open
 
@@ -207,14 +199,14 @@ class HistoryPage(Page):
     # What can be done
 
     def open_session(self, session: SessionSummary) -> None:
-        """Open a session and show the last page of the work that has something to show."""
+        """Open a session and show the last page of the workflow that has something to show."""
         is_open = session.path == self.desk.workspace.folder
         if is_open or self.desk.open_session(session.path):
-            self.desk.page_wanted.emit(results_page(session))
+            self.desk.page_wanted.emit(words.results_page(session))
 
     def compare(self, a: Path, b: Path) -> None:
         """Show two sessions side by side."""
-        self.desk.background.run("history compare", partial(compare, a, b), self._show_comparison, self._tell)
+        self.desk.background.run("history compare", partial(compare, a, b), self._show_comparison)
 
     def export(self, kind: ExportKind, session: Path, target: Path) -> None:
         """Write a session to a file."""
@@ -226,24 +218,25 @@ class HistoryPage(Page):
         )
 
     def import_zip(self, archive: Path) -> None:
-        """Take in an exported session."""
+        """Import an exported session."""
         self._exports_to = archive.parent
         self.desk.jobs.start(
-            self.tr("Import ZIP"), self.KEY, self._host, LibraryWork.import_zip, archive, self._shelf.root,
+            self.tr("Import ZIP"),
+            self.KEY,
+            self._host,
+            LibraryWork.import_zip,
+            archive,
+            self._shelf.root,
             then=self._on_imported,
-        )  # fmt: skip
+        )
 
     def delete(self, session: SessionSummary) -> None:
         """Move a session to the trash; the open one is closed first."""
         if session.path == self.desk.workspace.folder:
             self.desk.workspace.close()
             self.desk.page_wanted.emit(self.KEY)  # without a session the window goes to its first page
-        self.desk.background.run(
-            "history trash",
-            partial(send_to_trash, session.path),
-            partial(self._on_deleted, session),
-            self._tell,
-        )
+        trash = partial(send_to_trash, session.path)
+        self.desk.background.run("history trash", trash, partial(self._on_deleted, session))
 
     def _compare_with_open(self) -> None:
         folder, selected = self.desk.workspace.folder, self.selected
@@ -252,14 +245,8 @@ class HistoryPage(Page):
 
     def _show_comparison(self, comparison: Comparison) -> None:
         self._comparison.show_comparison(comparison)
-        self._show_pictures()
         self._left.setCurrentWidget(self._comparison)
         self._update()
-
-    def _show_pictures(self) -> None:
-        picture, comparison = self._list.cards.cards.picture, self._comparison.comparison
-        if comparison is not None:
-            self._comparison.show_pictures(picture(comparison.a), picture(comparison.b))
 
     def _leave_comparison(self) -> None:
         self._left.setCurrentWidget(self._list)
@@ -280,9 +267,6 @@ class HistoryPage(Page):
         self._to_select = folder
         self._shelf.refresh()
 
-    def _open_folder(self) -> None:
-        open_folder(self.selected[0].path)
-
     def _forget(self) -> None:
         self._shelf.forget(self.selected[0].path)
 
@@ -297,10 +281,3 @@ class HistoryPage(Page):
 
     def _start(self) -> None:
         self.desk.page_wanted.emit("welcome" if self.desk.workspace.session is None else "scan")
-
-    def _tell(self, error: PoursightError) -> None:
-        self.desk.told.emit(str(error))
-
-
-def _told(session: SessionSummary) -> str:
-    return f"{session.name}\n{verdict_words(session)}\n{origin_words(session)}"

@@ -1,30 +1,26 @@
-"""What the page shows of a session, read in a thread. No Qt here."""
+"""What the page shows of a session's pours, read in a thread. No Qt here."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.gui.views.scene.prepared import PreparedMesh, prepare_mesh
-from app.motion_record import current_motions
+from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
+from app.operations.choosing import current_motions
 from core.errors import SessionError
-from core.files import read_json
 from core.geometry import BoolArray
-from core.imagination.amount.result import AMOUNT_FILE, Amount
-from core.imagination.choice import choose_pour
+from core.imagination.amount.result import Amount
 from core.imagination.rendering.shapes import cup_surface
-from core.imagination.results import Containability, PourChoice, PourGrid
-from core.imagination.risk.results import RISK_FILE, PourRisk
-from core.motion.pour.choosing import PourMotions
-from core.motion.pour.plan import PourFeasibility
-from core.parameters.imagination import ParticleParameters, PouringParameters
-from core.pipeline.needs import source_of
-from core.ply import read_ply
-from core.session import Session
+from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
+from core.mesh_file import read_ply
+from core.motion.pour.feasibility import PourFeasibility, PourMotions
+from core.parameters.imagination import PouringParameters
+from core.pipeline.session_view import SessionView
 from core.session.operator_choice import OperatorChoice, read_operator_choice
+from core.session.record import StageRecord
 
 if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
@@ -36,49 +32,55 @@ class ShownPours:
 
     Attributes:
         folder: the session's.
-        digest: of the imagined pours.
+        record: of the imagined pours.
+        tries: record of the further tries and the choice; none in sessions of earlier versions.
         containability: the verdict before them.
         grid: none if the object is no open container.
         choice: what the imagination alone would choose; none without a grid.
         imagined_risk: of the pours, whether or not the arm can make them; none if no tries were made.
         paper_choice: what the paper's rule says; none without a grid.
-        amount: how many candies shall go in; none if it is not known what the object holds.
-        motions: which ones the cell's arm can make; none if that is not known.
-        operator: what a person chose; none if nobody did.
-        problem: why it is not known what a person chose; empty if it is.
-        pouring: what was imagined with.
+        amount: how many candies to pour; none if it is not known what the object holds.
+        pouring: parameters that the pours were imagined with.
         candy_radius_m: half a candy's diameter.
         body: the object.
         cup: in its own frame.
-        stands_in_cell: false for an imported mesh, which no arm is asked about.
+        is_in_cell: false for an imported mesh, which no arm can reach.
+        motions: which ones the cell's arm can make; none if that is not known.
+        operator: what a person chose; none if nobody did.
+        problem: why it is not known what a person chose; empty if it is.
     """
 
     folder: Path
-    digest: str
+    record: StageRecord
+    tries: StageRecord | None
     containability: Containability
     grid: PourGrid | None
     choice: PourChoice | None
     imagined_risk: PourRisk | None
     paper_choice: PourChoice | None
     amount: Amount | None
-    motions: PourMotions | None
-    operator: OperatorChoice | None
-    problem: str
     pouring: PouringParameters
     candy_radius_m: float
     body: PreparedMesh
     cup: PreparedMesh
-    stands_in_cell: bool
+    is_in_cell: bool
+    motions: PourMotions | None = None
+    operator: OperatorChoice | None = None
+    problem: str = ""
+
+    def is_of_same_run(self, other: ShownPours | None) -> bool:
+        """Whether both show the same imagined pours."""
+        return other is not None and (self.folder, self.record) == (other.folder, other.record)
 
     @property
     def risk(self) -> PourRisk | None:
-        """All tries: those among the pours that the arm can make too, where it was asked."""
+        """All trials, including those among the pours that the arm can make, where they were checked."""
         known = None if self.motions is None else self.motions.risk
         return known or self.imagined_risk
 
     @property
     def program_choice(self) -> PourChoice | None:
-        """What the program would pour: the arm's choice where it was asked."""
+        """What the program would pour: the choice among the pours that the arm can make, where checked."""
         return self.choice if self.motions is None else self.motions.choice
 
     @property
@@ -106,56 +108,63 @@ class ShownPours:
             return np.asarray(((final > box[0]) & (final < box[1])).all(axis=1), dtype=bool)
 
 
-def load_pours(folder: Path, cell: CellSettings | None, before: ShownPours | None) -> ShownPours:
-    """Read a session's pours, and what is known of the arm of a cell.
+@dataclass(frozen=True, eq=False)
+class PoursKey:
+    """What is to be read; read again at every refresh, because the choice and the motions come and go.
 
-    Args:
+    Attributes:
         folder: the session's, with a finished stage `pouring`.
-        cell: the cell to ask about; none: not known yet.
-        before: what was shown last; what is the same is not read again.
+        cell: whose arm is to make the pours; none: not known yet.
+        shown: what was shown last; imagined pours that are the same are not read again.
+    """
+
+    folder: Path
+    cell: CellSettings | None
+    shown: ShownPours | None
+
+
+def load_pours(key: PoursKey) -> ShownPours:
+    """Read a session's pours, what is known of the arm of a cell, and what a person chose.
 
     Raises:
         SessionError: something cannot be read.
     """
-    session = Session.open(folder)
-    record = session.record("pouring")
+    view = SessionView.of(key.folder)
+    session, record = view.session, view.session.record("pouring")
     if record is None:
-        raise SessionError(f"The session {folder} holds no pours; imagine first.")
-    is_mesh = source_of(session) == "mesh"
-    motions = None if cell is None or is_mesh else current_motions(session, cell)
-    operator, problem = _operator(folder, record.digest)
-    is_known = before is not None and (before.folder, before.digest) == (folder, record.digest)
-    containability = Containability.load(session.folder("containability"))
-    stage = session.folder("pouring")
-    table = read_json(stage / "choice.json")["choice"]
-    pouring = PouringParameters.model_validate(record.parameters["pouring"])
-    surface = read_ply(session.folder(source_of(session)) / "mesh.ply")
-    cup = cup_surface(pouring.cup)
-    grid = before.grid if is_known and before is not None else None
-    if table is not None and grid is None:
-        grid = PourGrid.load(stage)
-    return ShownPours(
-        folder,
-        record.digest,
-        containability,
-        grid,
-        None if table is None else PourChoice.from_table(table),
-        PourRisk.load(stage) if (stage / RISK_FILE).is_file() else None,
-        None if grid is None else choose_pour(grid, pouring.cup),
-        Amount.from_table(read_json(stage / AMOUNT_FILE)) if (stage / AMOUNT_FILE).is_file() else None,
-        motions,
-        operator,
-        problem,
-        pouring,
-        ParticleParameters.model_validate(record.parameters["particle"]).diameter_m / 2,
-        prepare_mesh(surface.vertices_m, surface.faces),
-        prepare_mesh(cup.vertices_m, cup.faces),
-        not is_mesh,
-    )
-
-
-def _operator(folder: Path, digest: str) -> tuple[OperatorChoice | None, str]:
+        raise SessionError(f"The session {key.folder} holds no pours; imagine first.")
+    tries = session.record("risk")
+    shown = key.shown
+    if shown is None or (shown.folder, shown.record, shown.tries) != (key.folder, record, tries):
+        shown = _imagined(view, record, tries)
+    motions = current_motions(session, key.cell) if key.cell is not None and shown.is_in_cell else None
     try:
-        return read_operator_choice(folder, digest), ""
+        operator, problem = read_operator_choice(key.folder, record.digest), ""
     except SessionError as error:
-        return None, str(error)
+        operator, problem = None, str(error)
+    return replace(shown, motions=motions, operator=operator, problem=problem)
+
+
+def _imagined(view: SessionView, record: StageRecord, tries: StageRecord | None) -> ShownPours:
+    """Read what was imagined."""
+    if view.containability is None:
+        raise SessionError(f"The session {view.session.path} holds no verdict; imagine first.")
+    parameters = view.parameters_of("pouring")
+    surface = read_ply(view.session.folder(view.source) / "mesh.ply")
+    cup = cup_surface(parameters.pouring.cup)
+    return ShownPours(
+        folder=view.session.path,
+        record=record,
+        tries=tries,
+        containability=view.containability,
+        grid=view.grid,
+        choice=None if view.tries is None else view.tries.choice,
+        imagined_risk=None if view.tries is None else view.tries.risk,
+        paper_choice=view.paper_choice,
+        amount=view.amount,
+        pouring=parameters.pouring,
+        candy_radius_m=parameters.particle.diameter_m / 2,
+        body=prepare_mesh(surface.vertices_m, surface.faces),
+        cup=prepare_mesh(cup.vertices_m, cup.faces),
+        is_in_cell=view.source != "mesh",
+    )

@@ -1,18 +1,19 @@
-"""Reading what the page shows, ready to be drawn. Qt-free, called in a thread."""
+"""What the page shows of a session, read in the background and ready to be drawn. Knows no Qt."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from app.gui.views.scene import ColorScale, PreparedMesh, prepare_mesh
-from core.geometry import AnyArray, FloatArray
+from core.geometry import FloatArray
 from core.mesh import TriangleMesh
+from core.mesh_file import read_ply
 from core.mesh_topology import join, topology
-from core.ply import read_ply
+from core.pipeline.session_view import SessionView
 from core.session import Session
 
 if TYPE_CHECKING:  # they bring the fusion along
@@ -22,9 +23,6 @@ if TYPE_CHECKING:  # they bring the fusion along
     from core.scan import CropBox
 
 MM = 1000.0
-LEAST_SCALE_MM = 0.5
-"""Of a difference; less is noise and should not look like much."""
-_SHOWN_SHARE = 98.0
 _GOLDEN = 0.618
 
 
@@ -69,7 +67,7 @@ class ShownModel:
         centers_m: (F, 3) of its faces.
         is_closed: whether it encloses a volume.
         reconstruction: none for an imported mesh.
-        quality: of the scan; none if it was not judged with this surface.
+        quality: of the scan; none if it was not checked with this surface.
         collision: none if it was not built from this surface.
         health: how well the poses agree, in sentences; empty for an imported mesh.
     """
@@ -100,17 +98,18 @@ class Loaded:
     model: ShownModel | None
 
 
-def key_of(session: Session) -> ModelKey:
-    """Look up the stages' digests; cheap."""
+def key_of(view: SessionView) -> ModelKey:
+    """Look up the stages' digests."""
     records = {
-        stage: session.record(stage) for stage in ("scan", "mesh", "reconstruction", "quality", "collision")
+        stage: view.finished.get(stage)
+        for stage in ("scan", "mesh", "reconstruction", "quality", "collision")
     }
     digests = {stage: "" if record is None else record.digest for stage, record in records.items()}
     surface = digests["mesh"] or digests["reconstruction"]
-    return ModelKey(session.path, digests["scan"], surface, digests["quality"], digests["collision"])
+    return ModelKey(view.session.path, digests["scan"], surface, digests["quality"], digests["collision"])
 
 
-def load(key: ModelKey) -> Loaded:
+def load_model(key: ModelKey) -> Loaded:
     """Read a session's model.
 
     Raises:
@@ -120,18 +119,17 @@ def load(key: ModelKey) -> Loaded:
     session = Session.open(key.folder)
     is_mesh = session.record("mesh") is not None
     own_box = None if is_mesh or not key.scan else _own_box(session)
-    return Loaded(key, own_box, _load_model(session, key, is_mesh) if key.surface else None)
+    return Loaded(key, own_box, _model(session, key, is_mesh) if key.surface else None)
 
 
 def _own_box(session: Session) -> CropBox:
-    from core.scan.authors_layout import FACTS_FILE
-    from core.scan.crop_box import RELEASED_BOX
-    from core.scan.facts import read_facts
+    from core.scan.authors_layout import FACTS_FILE, read_facts
+    from core.scan.model import RELEASED_BOX
 
     return read_facts(session.folder("scan") / FACTS_FILE)[1] or RELEASED_BOX
 
 
-def _load_model(session: Session, key: ModelKey, is_mesh: bool) -> ShownModel:
+def _model(session: Session, key: ModelKey, is_mesh: bool) -> ShownModel:
     reconstruction = None if is_mesh else _reconstruction(session)
     source = "mesh" if is_mesh else "reconstruction"
     mesh = read_ply(session.folder("mesh") / "mesh.ply") if reconstruction is None else reconstruction.mesh
@@ -194,16 +192,3 @@ def _health(reconstruction: Reconstruction) -> str:
 def _centers_m(mesh: TriangleMesh) -> FloatArray:
     centers: FloatArray = mesh.vertices_m[mesh.faces].mean(axis=1)
     return centers
-
-
-def colored(body: PreparedMesh, values: AnyArray, scale: ColorScale) -> PreparedMesh:
-    """Return a mesh with a number (V,) for each vertex; its normals need not be computed again."""
-    return replace(body, values=values.astype(np.float32), scale=scale)
-
-
-def difference_scale(difference_m: FloatArray, label: str) -> ColorScale:
-    """Return a scale, the same both ways, for distances (V,) in metres that are shown in mm."""
-    most_mm = max(float(np.percentile(np.abs(difference_m), _SHOWN_SHARE)) * MM, LEAST_SCALE_MM)
-    decade = 10.0 ** np.floor(np.log10(most_mm))
-    limit = next(step * decade for step in (1, 2, 5, 10) if step * decade >= most_mm * (1 - 1e-9))
-    return ColorScale(label, "mm", -float(limit), float(limit))

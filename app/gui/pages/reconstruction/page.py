@@ -1,4 +1,4 @@
-"""The Reconstruction page: the model, what is known of it, and what a changed parameter does to it."""
+"""The Model page: the model, what is known of it, and what a changed parameter does to it."""
 
 from __future__ import annotations
 
@@ -10,71 +10,66 @@ from PySide6.QtWidgets import QVBoxLayout
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
-from app.gui.pages.page import Page, SplitView
-from app.gui.pages.reconstruction.loading import Loaded, ModelKey, ShownModel, key_of, load
-from app.gui.pages.reconstruction.side_part import ModelSide
-from app.gui.pages.reconstruction.view_part import ModelView
+from app.gui.pages.background_page import BackgroundPage
+from app.gui.pages.page import SplitView
+from app.gui.pages.reconstruction.loading import Loaded, ModelKey, ShownModel, key_of, load_model
+from app.gui.pages.reconstruction.side import STAGES, ModelSide
+from app.gui.pages.reconstruction.view import ModelView
 from app.jobs.session_work import SessionWork
-from core.errors import InputError, PoursightError
+from core.errors import InputError
 from core.geometry import FloatArray
 from core.parameters import apply_settings
 from core.parameters.reconstruction import Point
 
-_STAGES = ("reconstruction", "quality", "collision")
 
-
-class ReconstructionPage(Page):
-    """Shows the session's model and keeps the one before in memory, to compare them."""
+class ReconstructionPage(BackgroundPage[ModelKey, Loaded]):
+    """Shows the session's model, and remembers the one before to compare them."""
 
     KEY = "reconstruction"
 
     def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
-        self._key: ModelKey | None = None
-        self._loaded: Loaded | None = None
+        super().__init__(desk, load_model)
         self._last: ShownModel | None = None
         self._difference_m: FloatArray | None = None
         self._was_compared = False
-        self._failure = ""
         self.view = ModelView()
         self.side = ModelSide(desk)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(SplitView(self.view, self.side))
         self._connect()
-        self._show()
+        self.show_content(None)
 
     def _connect(self) -> None:
         self.side.primary.clicked.connect(self.reconstruct)
-        self.side.empty_wanted.connect(lambda: self.desk.page_wanted.emit("scan"))
+        self.side.scan_requested.connect(lambda: self.desk.page_wanted.emit("scan"))
         self.view.box_edited.connect(self._crop)
         self.view.crop.reset_wanted.connect(lambda: self._crop(None, None))
         self.desk.workspace.parameters_changed.connect(self._show_box)
-        jobs = self.desk.jobs
-        jobs.started.connect(self._look)
-        for signal in (jobs.finished, jobs.failed):
-            signal.connect(lambda *_: QTimer.singleShot(0, self, self._job_ended))
+        for signal in (self.desk.jobs.finished, self.desk.jobs.failed):
+            signal.connect(lambda *_: QTimer.singleShot(0, self, self._compare))
 
     @property
     def model(self) -> ShownModel | None:
         """What is shown."""
-        return None if self._loaded is None else self._loaded.model
+        return None if self.content is None else self.content.model
 
     @override
-    def refresh(self) -> None:
-        session = self.desk.workspace.session
-        if session is None:
-            self._forget()
-            return
-        if self._key is not None and self._key.folder != session.path:
-            self._forget()
-        key = key_of(session)
-        if key != self._key:
-            self._key = key
-            self.desk.background.run(
-                "reconstruction.model", partial(load, key), partial(self._take, key), self._fail
-            )
-        self._look()
+    def content_key(self) -> ModelKey | None:
+        view = self.desk.workspace.view
+        return None if view is None else key_of(view)
+
+    @override
+    def show_content(self, former: Loaded | None) -> None:
+        model, shown = self.model, None if former is None else former.model
+        if self.content is None:
+            self._last = self._difference_m = None
+            self._was_compared = False
+        elif shown is not None and model is not None and shown.digest != model.digest:
+            self._last = shown if model.reconstruction is not None else None
+            self._difference_m, self._was_compared = None, False
+        self._show()
+        self._compare()
 
     def reconstruct(self) -> None:
         """Reconstruct with the parameters as they are now."""
@@ -86,26 +81,6 @@ class ReconstructionPage(Page):
             SessionWork.reconstruct,
             desk.workspace.task(),
         )
-
-    def _forget(self) -> None:
-        self._key = self._loaded = self._last = self._difference_m = None
-        self._was_compared, self._failure = False, ""
-        self._show()
-
-    def _take(self, key: ModelKey, loaded: Loaded) -> None:
-        if key != self._key:
-            return
-        former, self._loaded, self._failure = self.model, loaded, ""
-        model = loaded.model
-        if former is not None and model is not None and former.digest != model.digest:
-            self._last = former if model.reconstruction is not None else None
-            self._difference_m, self._was_compared = None, False
-        self._show()
-        self._compare()
-
-    def _fail(self, error: PoursightError) -> None:
-        self._loaded, self._failure = None, str(error)
-        self._show()
 
     def _compare(self) -> None:
         """Let the host find out how far the model lies off the one before, once nothing else runs."""
@@ -131,29 +106,23 @@ class ReconstructionPage(Page):
         if self.view.modes.mode == "shape":
             self.view.modes.choose("difference")
 
-    def _job_ended(self) -> None:
-        self._look()
-        self._compare()
-
     def _show(self) -> None:
         """Show what is loaded."""
         model = self.model
-        self.side.show_failure(self._failure)
+        self.side.show_failure(self.failure)
         self.view.show_model(model, self._difference_m)
         if model is not None:
             self.side.show_model(model, self._last, self._difference_m)
         self._show_box()
-        self._look()
+        self.update_actions()
 
     def _show_empty(self) -> None:
-        if self._key is not None and self._key.surface:
-            words = (
-                self.tr("The model cannot be shown") if self._failure else self.tr("The model is being read")
-            )
+        if self.desk.workspace.has("reconstruction") or self.desk.workspace.has("mesh"):
+            words = self.tr("The model cannot be shown") if self.failure else self.tr("Loading the model …")
             self.side.show_empty(words, "")
             self.view.set_empty_text("")
         elif self.desk.workspace.has("scan"):
-            self.side.show_empty(self.tr("The scan is there: press Reconstruct to make a model of it."), "")
+            self.side.show_empty(self.tr("Press Reconstruct to make a model of the scan."), "")
             self.view.set_empty_text(self.tr("The model appears here."))
         else:
             said = self.tr("The model of a scanned object appears here.")
@@ -161,7 +130,7 @@ class ReconstructionPage(Page):
             self.view.set_empty_text(said)
 
     def _show_box(self) -> None:
-        own = None if self._loaded is None else self._loaded.own_box
+        own = None if self.content is None else self.content.own_box
         settings = self.desk.workspace.parameters.reconstruction
         if own is None:
             self.view.set_box(None, None, is_own=True)
@@ -177,22 +146,23 @@ class ReconstructionPage(Page):
         try:
             workspace.edit(apply_settings(workspace.parameters, corners), self.tr("crop box"))
         except InputError as error:
-            self.desk.told.emit(str(error))
+            self.report(error)
             self._show_box()
 
-    def _look(self) -> None:
+    @override
+    def update_actions(self) -> None:
         """Enable what can be done now, and say it where there is no model."""
         if self.model is None:
             self._show_empty()
         workspace, primary = self.desk.workspace, self.side.primary
         is_mesh = workspace.has("mesh")
         has_input = is_mesh or workspace.has("scan")
-        wanted = ("collision",) if is_mesh else _STAGES
+        wanted = ("collision",) if is_mesh else STAGES
         is_done = has_input and all(workspace.is_fresh(stage) for stage in wanted)
         primary.setText(self.tr("Build collision model") if is_mesh else self.tr("Reconstruct"))
         primary.setEnabled(has_input and not is_done and self.desk.jobs.is_idle)
         if is_done:
-            primary.setToolTip(self.tr("The model is up to date; change a parameter to make another"))
+            primary.setToolTip(self.tr("The model is up to date; change a parameter to make another one"))
         else:
-            primary.setToolTip(self.tr("Make the model with the parameters as they are now"))
+            primary.setToolTip(self.tr("Make the model with the current parameters"))
         self.side.stale.look(workspace, primary.text())

@@ -1,21 +1,84 @@
-"""Where one is on the way from connecting to the outcome."""
+"""Numbered steps: the mark of one, and the row from connecting to the outcome."""
 
 from __future__ import annotations
 
+from typing import Literal
+
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QFontMetricsF, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QFont, QFontMetricsF, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QSizePolicy, QWidget
 from typing_extensions import override
 
-from app.gui.pages.robot.discs import paint_disc, state_of
-from app.gui.theme import GRID_PX, theme_of
-from app.gui.views.painting import smaller
+from app.gui.theme import GRID_PX, Theme, theme_of
+from app.gui.views.painting import smaller, tabular
 
-_DISC_PX = 22
+DiscState = Literal["to come", "next", "done"]
+_TICK = (QPointF(-4.5, 0.5), QPointF(-1.5, 3.5), QPointF(4.5, -3.5))
+_IN_BAR_PX, _ALONE_PX = 22, 24
 
 
-class StepBar(QWidget):
-    """Numbered discs with words: done ones have a tick, the current one is filled."""
+def state_of(number: int, current: int) -> DiscState:
+    """Return the state of a step when another one is current."""
+    if number == current:
+        return "next"
+    return "done" if number < current else "to come"
+
+
+def _paint_disc(
+    painter: QPainter, box: QRectF, number: int, state: DiscState, theme: Theme, font: QFont
+) -> None:
+    """Paint a step's number in a ring: filled while it is the next one, a tick when it is done."""
+    painter.setPen(QPen(theme.color("line" if state == "to come" else "accent"), 2))
+    painter.setBrush(theme.color("accent" if state == "next" else "surface"))
+    painter.drawEllipse(box.adjusted(1.5, 1.5, -1.5, -1.5))
+    if state == "done":
+        painter.setPen(QPen(theme.color("accent"), 2.2, c=Qt.PenCapStyle.RoundCap))
+        painter.drawPolyline([box.center() + point for point in _TICK])
+        return
+    painter.setPen(theme.color("on_accent" if state == "next" else "muted"))
+    painter.setFont(tabular(font, bold=state == "next"))
+    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, str(number))
+
+
+class _Painted(QWidget):
+    """Is painted anew with other colours."""
+
+    @override
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange:
+            self.update()
+
+
+class Disc(_Painted):
+    """The mark of one step."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__()
+        self.number = number
+        self._state: DiscState = "to come"
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+
+    def set_state(self, state: DiscState) -> None:
+        """Show another state."""
+        self._state = state
+        self.setAccessibleName(self.tr("done") if state == "done" else str(self.number))
+        self.update()
+
+    @override
+    def sizeHint(self) -> QSize:
+        return QSize(_ALONE_PX, _ALONE_PX)
+
+    @override
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        _paint_disc(painter, QRectF(self.rect()), self.number, self._state, theme_of(self), self.font())
+        painter.end()
+
+
+class StepBar(_Painted):
+    """Marks with words, joined by a line."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -30,13 +93,8 @@ class StepBar(QWidget):
         self._current = 0
         self.set_current(0)
 
-    @property
-    def current(self) -> int:
-        """The number of the step, from 1; 0 if none is current."""
-        return self._current
-
     def set_current(self, number: int) -> None:
-        """Show another step as the current one."""
+        """Show another step as the current one, counted from 1; 0: none is."""
         self._current = number
         said = self.tr("No step yet")
         if number:
@@ -49,7 +107,7 @@ class StepBar(QWidget):
 
     @override
     def sizeHint(self) -> QSize:
-        height = _DISC_PX + GRID_PX // 2 + round(QFontMetricsF(smaller(self.font())).height())
+        height = _IN_BAR_PX + GRID_PX // 2 + round(QFontMetricsF(smaller(self.font())).height())
         return QSize(300, height)
 
     @override
@@ -57,19 +115,12 @@ class StepBar(QWidget):
         return QSize(240, self.sizeHint().height())
 
     @override
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()
-
-    @override
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        theme = theme_of(self)
         cell = self.width() / len(self._names)
-        y = _DISC_PX / 2 + 1
-        painter.setPen(QPen(theme.color("line"), 2))
+        y = _IN_BAR_PX / 2 + 1
+        painter.setPen(QPen(theme_of(self).color("line"), 2))
         painter.drawLine(QPointF(cell / 2, y), QPointF(self.width() - cell / 2, y))
         for k, name in enumerate(self._names):
             self._paint_step(painter, k + 1, name, QRectF(k * cell, 0, cell, self.height()), y)
@@ -78,9 +129,9 @@ class StepBar(QWidget):
     def _paint_step(self, painter: QPainter, number: int, name: str, box: QRectF, y: float) -> None:
         theme = theme_of(self)
         state = state_of(number, self._current)
-        disc = QRectF(0, 0, _DISC_PX, _DISC_PX)
+        disc = QRectF(0, 0, _IN_BAR_PX, _IN_BAR_PX)
         disc.moveCenter(QPointF(box.center().x(), y))
-        paint_disc(painter, disc, number, state, theme, self.font())
+        _paint_disc(painter, disc, number, state, theme, self.font())
         font = smaller(self.font())
         font.setBold(state == "next")
         painter.setFont(font)

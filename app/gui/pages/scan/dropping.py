@@ -1,58 +1,57 @@
-"""A folder or a mesh dropped onto the page."""
+"""A folder of views or a mesh that is dropped onto the page."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication, QEvent, QMimeData, QObject, QRectF, Qt, Signal
-from PySide6.QtGui import QDropEvent, QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QCoreApplication, QEvent, QMimeData, QObject, Qt, Signal
+from PySide6.QtGui import QColor, QDropEvent
+from PySide6.QtWidgets import QLabel, QWidget
 from typing_extensions import override
 
-from app.gui.pages.scan.object_choice import MESH_ENDINGS
 from app.gui.theme import GRID_PX, theme_of
+from core.errors import InputError
+
+MESH_ENDINGS = (".obj", ".ply", ".stl")
 
 
-@dataclass(frozen=True)
-class Dropped:
-    """What was dropped: one of the two, or a sentence that says why it is neither."""
+def dropped_path(data: QMimeData) -> Path:
+    """Return the folder of views or the mesh that is being dropped.
 
-    folder: Path | None = None
-    mesh: Path | None = None
-    sentence: str = ""
-
-
-def dropped(data: QMimeData) -> Dropped:
-    """Tell what is being dropped."""
+    Raises:
+        InputError: it is neither, or several things at once.
+    """
     translate = QCoreApplication.translate
     paths = [Path(url.toLocalFile()) for url in data.urls() if url.isLocalFile()]
     if len(paths) != 1:
-        return Dropped(sentence=translate("ScanPage", "Drop one folder of views or one mesh file at a time."))
+        raise InputError(translate("ScanPage", "Drop one folder of views or one mesh file at a time."))
     [path] = paths
-    if path.is_dir():
-        return Dropped(folder=path)
-    if path.suffix.lower() in MESH_ENDINGS:
-        return Dropped(mesh=path)
-    said = translate(
-        "ScanPage", "{name} is neither a folder of views nor a mesh (.obj, .ply, .stl): nothing was imported."
-    )
-    return Dropped(sentence=said.format(name=path.name))
+    if not path.is_dir() and path.suffix.lower() not in MESH_ENDINGS:
+        said = translate(
+            "ScanPage",
+            "{name} is neither a folder of views nor a mesh (.obj, .ply, .stl); nothing was imported.",
+        )
+        raise InputError(said.format(name=path.name))
+    return path
 
 
 class DropTarget(QObject):
     """Lets things be dropped onto a page.
 
-    Attributes:
-        arrived: `Dropped`.
+    Signals: `arrived` with the path of a folder or mesh; `refused` with the `InputError` of anything else.
     """
 
     arrived = Signal(object)
+    refused = Signal(object)
 
     def __init__(self, page: QWidget) -> None:
         super().__init__(page)
         self._page = page
-        self._hint = _Hint(page)
+        self._hint = QLabel(self.tr("Drop a folder of views or a mesh file to import it"), page)
+        self._hint.setObjectName("drop_hint")
+        self._hint.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._hint.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._hint.hide()
         page.setAcceptDrops(True)
         page.installEventFilter(self)
 
@@ -69,45 +68,26 @@ class DropTarget(QObject):
             return False
         event.acceptProposedAction()
         if event.type() == QEvent.Type.DragEnter:
-            self._hint.setGeometry(self._page.rect())
-            self._hint.raise_()
-            self._hint.show()
+            self._show_hint()
         elif event.type() == QEvent.Type.Drop:
             self._hint.hide()
-            self.arrived.emit(dropped(event.mimeData()))
+            try:
+                path = dropped_path(event.mimeData())
+            except InputError as error:
+                self.refused.emit(error)
+            else:
+                self.arrived.emit(path)
         return True
 
-
-class _Hint(QWidget):
-    """Lies over the page while something is dragged over it."""
-
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.setObjectName("drop_hint")
-        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.hide()
-
-    @override
-    def paintEvent(self, event: QPaintEvent) -> None:
-        theme = theme_of(self)
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    def _show_hint(self) -> None:
+        """Lay the hint over the page while something is dragged over it."""
+        theme = theme_of(self._page)
         veil = theme.color("window")
         veil.setAlphaF(0.8)
-        painter.fillRect(self.rect(), veil)
-        edge = QRectF(self.rect()).adjusted(GRID_PX, GRID_PX, -GRID_PX, -GRID_PX)
-        painter.setPen(QPen(theme.color("accent"), 2, Qt.PenStyle.DashLine))
-        painter.drawRoundedRect(edge, GRID_PX, GRID_PX)
-        painter.setPen(theme.color("text"))
-        font = self.font()
-        font.setPointSizeF(1.4 * font.pointSizeF())
-        painter.setFont(font)
-        said = self.tr("Drop a folder of views or a mesh file to import it")
-        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, said)
-        painter.end()
-
-    @override
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
-            self.update()
+        self._hint.setStyleSheet(
+            f"background: {veil.name(QColor.NameFormat.HexArgb)}; color: {theme.color('text').name()};"
+            f"border: 2px dashed {theme.color('accent').name()}; border-radius: {GRID_PX}px; font-size: 14pt;"
+        )
+        self._hint.setGeometry(self._page.rect().adjusted(GRID_PX, GRID_PX, -GRID_PX, -GRID_PX))
+        self._hint.raise_()
+        self._hint.show()

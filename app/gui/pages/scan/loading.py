@@ -1,4 +1,4 @@
-"""What the Scan page shows of a session and of the cell, read in the background. Knows no Qt."""
+"""What the page shows of the session and the cell, read in the background. Knows no Qt."""
 
 from __future__ import annotations
 
@@ -7,15 +7,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from app.gui.views.scene.prepared import PreparedMesh, prepare_mesh
-from app.jobs.scan_news import ViewNews
-from app.jobs.scan_telling import planned_pose
-from app.scanning import IN_PROGRESS
+import numpy as np
+
+from app.gui.pages.cell_model import CellModel, cell_model
+from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
+from app.jobs.scan_events import ViewProgress
+from app.jobs.scan_work import planned_pose
+from app.library.session_folder import UNFINISHED_SCAN
 from core.errors import PoursightError
+from core.motion.kinematics import link_poses
 from core.session import Session
 
 if TYPE_CHECKING:
-    import numpy as np
     import numpy.typing as npt
 
     from core.geometry import FloatArray
@@ -25,10 +28,32 @@ if TYPE_CHECKING:
     from hardware.cell import CellSettings
     from hardware.scanning.views import ViewRecord
 
-Source = Literal["nothing", "kept", "scan", "mesh"]
-"""Nothing yet; views of a scan that was interrupted; a finished scan; an imported mesh."""
+Source = Literal["nothing", "interrupted", "scan", "mesh"]
+"""Nothing yet; views of an interrupted scan; a finished scan; an imported mesh."""
 COLOR_ENDING, DEPTH_ENDING, POSE_ENDING = ".color.png", ".depth.png", ".pose.txt"
 FRAMES = "rgbd"
+_MARGIN_M = 0.04
+_ARM_M = 0.08
+"""About the middles of the arm's links."""
+
+
+@dataclass(frozen=True, eq=False)
+class ScanCell:
+    """What is shown of a cell.
+
+    Attributes:
+        model: arm and furniture.
+        has_arm: whether something moves; a cell that plays a recorded scan has no arm.
+        reach_m: (2, 3) corners of a box around the arm at rest and at all views.
+        box_min_m: (3,) lower corner of the box that holds the object.
+        box_max_m: (3,) upper corner.
+    """
+
+    model: CellModel
+    has_arm: bool
+    reach_m: FloatArray
+    box_min_m: FloatArray
+    box_max_m: FloatArray
 
 
 @dataclass(frozen=True)
@@ -57,16 +82,16 @@ class ScanContents:
         source: what is there.
         views: in their order, planned ones among them.
         pictures: of those that have images, by name.
-        object_name: what stands in a simulated cell: a built-in object's name or a mesh file; none otherwise.
+        object_name: of what is scanned in a simulated cell, or its mesh file; none in other cells.
         is_of_cell: whether the chosen cell can take further views of it.
-        quality: how good the scan is; none before it was judged.
+        quality: how good the scan is; none before it was checked.
         pose_error_m: how far a view's surface errs, poses corrected as far as they were; none if not known.
         mesh: the surface, ready to be drawn; none before there is one.
         extents_m: (3,) the surface's size along the axes.
     """
 
     source: Source
-    views: tuple[ViewNews, ...] = ()
+    views: tuple[ViewProgress, ...] = ()
     pictures: dict[str, Picture] | None = None
     object_name: str | None = None
     is_of_cell: bool = False
@@ -81,30 +106,51 @@ class ScanContents:
         return sum(view.state in ("taken", "poor") for view in self.views)
 
 
-def load_contents(session: Session | None, cell: CellSettings | None, seed: int) -> ScanContents:
-    """Read everything the page shows of a session.
+@dataclass(frozen=True, eq=False)
+class ScanKey:
+    """What is to be read, at every refresh: views are added without a new stage.
 
-    Args:
+    Attributes:
         session: the open one.
         cell: that is worked with.
         seed: of the parameters; a simulated scan goes on with its own seed only.
+    """
+
+    session: Session | None
+    cell: CellSettings | None
+    seed: int
+
+
+def load_scan(key: ScanKey) -> ScanContents:
+    """Read everything the page shows of a session.
 
     Raises:
         PoursightError: a file is damaged.
     """
-    from hardware.scanning.keeping import read_origin, read_views
+    from hardware.scanning.store import read_origin, read_views
 
+    session, cell, seed = key.session, key.cell, key.seed
     if session is None:
         return _planned(cell)
     if session.record("mesh") is not None:
         return _imported_mesh(session)
-    folder = session.path / IN_PROGRESS
+    folder = session.path / UNFINISHED_SCAN
     if read_views(folder):
-        return _views(folder, "kept", cell, read_origin(folder), seed)
+        return _views(folder, "interrupted", cell, read_origin(folder), seed)
     record = session.record("scan")
     if record is None:
         return _planned(cell)
     return _with_results(session, _views(session.path / "scan", "scan", cell, record.parameters, seed))
+
+
+def load_scan_cell(cell: CellSettings) -> ScanCell:
+    """Put the cell together."""
+    low_m, high_m = np.array(cell.place.crop_min_m), np.array(cell.place.crop_max_m)
+    model = cell_model(cell, [low_m[:2], high_m[:2]], _MARGIN_M)
+    joints_rad = np.array([cell.robot.home_rad, *cell.scan.views_rad])
+    middles_m = link_poses(model.arm, joints_rad)[..., :3, 3].reshape(-1, 3)
+    reach_m = np.array([middles_m.min(axis=0) - _ARM_M, middles_m.max(axis=0) + _ARM_M])
+    return ScanCell(model, cell.robot.kind != "replay", reach_m, low_m, high_m)
 
 
 def load_images(picture: Picture) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
@@ -113,7 +159,7 @@ def load_images(picture: Picture) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np
     Raises:
         InputError: a file is missing or damaged.
     """
-    from core.scan.images import read_color, read_depth
+    from core.scan.view_files import read_color, read_depth
 
     return read_color(picture.color), read_depth(picture.depth)
 
@@ -136,8 +182,14 @@ def object_names() -> tuple[str, ...]:
     return tuple(BUILTIN_OBJECTS)
 
 
+def object_title(source: str) -> str:
+    """Return what people call an object: a built-in one by its name, a mesh by its file's name."""
+    path = Path(source)
+    return path.name if path.suffix else source.capitalize()
+
+
 def _planned(cell: CellSettings | None) -> ScanContents:
-    """What the cell will do; a recorded scan tells its views when it is played."""
+    """What the cell will do; the views of a recorded scan are known when it is played."""
     from hardware.scanning.views import name_views
 
     if cell is None or cell.camera.kind == "replay":
@@ -145,12 +197,12 @@ def _planned(cell: CellSettings | None) -> ScanContents:
     views = name_views(cell.scan.views_rad)
     return ScanContents(
         "nothing",
-        tuple(ViewNews(v.name, "pending", (), planned_pose(cell, v.joints_rad)) for v in views),
+        tuple(ViewProgress(v.name, "pending", (), planned_pose(cell, v.joints_rad)) for v in views),
     )
 
 
 def _imported_mesh(session: Session) -> ScanContents:
-    from core.ply import read_ply
+    from core.mesh_file import read_ply
 
     mesh = read_ply(session.folder("mesh") / "mesh.ply")
     return ScanContents("mesh", mesh=_prepared(mesh), extents_m=mesh.extents_m)
@@ -159,15 +211,15 @@ def _imported_mesh(session: Session) -> ScanContents:
 def _views(
     folder: Path, source: Source, cell: CellSettings | None, origin: dict[str, Any], seed: int
 ) -> ScanContents:
-    from hardware.scanning.keeping import read_views
+    from hardware.scanning.store import read_views
 
     records = read_views(folder)
     frames = folder / FRAMES
     if records:
         views = [_view(record, frames, cell) for record in records]
-    else:  # imported: nobody noted what became of each view
+    else:  # imported: what became of each view was not recorded
         names = sorted(path.name.removesuffix(COLOR_ENDING) for path in frames.glob("*" + COLOR_ENDING))
-        views = [ViewNews(name, "taken", (), _kept_pose(frames, name)) for name in names]
+        views = [ViewProgress(name, "taken", (), _kept_pose(frames, name)) for name in names]
     named = origin.get("object")
     return ScanContents(
         source,
@@ -184,15 +236,15 @@ def _is_of_cell(origin: dict[str, Any], cell: CellSettings, seed: int) -> bool:
     return same_cell and origin.get("seed", seed) == seed and not is_recorded
 
 
-def _view(record: ViewRecord, frames: Path, cell: CellSettings | None) -> ViewNews:
+def _view(record: ViewRecord, frames: Path, cell: CellSettings | None) -> ViewProgress:
     pose = _kept_pose(frames, record.view.name) if record.has_image else None
     if pose is None and cell is not None and any(record.view.joints_rad):
         pose = planned_pose(cell, record.view.joints_rad)
-    return ViewNews(record.view.name, record.state.value, record.problems, pose)
+    return ViewProgress(record.view.name, record.state.value, record.problems, pose)
 
 
 def _kept_pose(frames: Path, name: str) -> FloatArray | None:
-    from core.scan.matrices import read_pose
+    from core.scan.view_files import read_pose
 
     try:
         return read_pose(frames / (name + POSE_ENDING))
@@ -223,11 +275,11 @@ def _with_results(session: Session, contents: ScanContents) -> ScanContents:
     return contents
 
 
-def _with_problems(views: tuple[ViewNews, ...], quality: ScanQuality) -> tuple[ViewNews, ...]:
+def _with_problems(views: tuple[ViewProgress, ...], quality: ScanQuality) -> tuple[ViewProgress, ...]:
     """An imported view has the problems that the judgement found."""
     found = {view.name: view.problems for view in quality.views if view.problems}
     return tuple(
-        ViewNews(view.name, "poor", found[view.name], view.T_base_camera)
+        ViewProgress(view.name, "poor", found[view.name], view.T_base_camera)
         if view.state == "taken" and view.name in found
         else view
         for view in views

@@ -2,47 +2,39 @@
 
 from __future__ import annotations
 
-from functools import partial
 from pathlib import Path
 
 from PySide6.QtWidgets import QPushButton, QVBoxLayout
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
-from app.gui.pages.page import Page
-from app.gui.pages.scan.cell_picture import picture_cell
+from app.gui.pages.background_page import BackgroundPage
 from app.gui.pages.scan.dropping import DropTarget
-from app.gui.pages.scan.importing import Imports
-from app.gui.pages.scan.left_part import ScanLeft, ScanSplit
-from app.gui.pages.scan.loading import ScanContents, load_contents, object_names
-from app.gui.pages.scan.shown_images import ShownImages
-from app.gui.pages.scan.side_part import ScanSide
-from app.gui.pages.scan.standing import Deed, Situation, remarks_of, verdict_of
-from app.gui.pages.scan.view_table import ViewTable
+from app.gui.pages.scan.left import ScanLeft, ScanSplit
+from app.gui.pages.scan.loading import ScanContents, ScanKey, load_scan, load_scan_cell, object_names
+from app.gui.pages.scan.side import ScanSide
+from app.gui.pages.scan.situation import Action, Situation, remarks_of, verdict_of
+from app.gui.pages.scan.views import ShownImages, ViewTable
 from app.gui.pages.scan.work import ScanJobs
 from app.gui.views.scene import PreparedMesh, prepare_mesh
-from app.jobs.scan_news import MeshGrown, Proposal, ViewDone, ViewsPlanned
-from app.scanning import ScanWishes
-from core.errors import PoursightError
-from core.pipeline.needs import Freshness
+from app.jobs.scan_events import MeshGrown, ViewDone, ViewsPlanned
+from app.operations.scanning import Proposal, ScanRequest
+from core.pipeline.freshness import Freshness
 
 _REAL_CELL_NAME = "object"
 
 
-class ScanPage(Page):
-    """Shows the session's scan, and the one under way."""
+class ScanPage(BackgroundPage[ScanKey, ScanContents]):
+    """Shows the session's scan, and the one that is running."""
 
     KEY = "scan"
 
     def __init__(self, desk: Desk) -> None:
-        super().__init__(desk)
+        super().__init__(desk, load_scan)
         self.left, self.side = ScanLeft(), ScanSide()
         self._work = ScanJobs(desk, self.KEY, self)
-        self._imports = Imports(desk, self._work, self._is_empty)
         self._views = ViewTable()
         self._images = ShownImages(self.side, self._views, desk.background)
-        self._contents: ScanContents | None = None
-        self._folder: Path | None = None
         self._views_of: Path | None = None
         self._grown: PreparedMesh | None = None
         self._proposal: Proposal | None = None
@@ -53,51 +45,57 @@ class ScanPage(Page):
         column.addWidget(ScanSplit(self.left, self.side))
         self._drops = DropTarget(self)
         self._connect()
-        desk.background.run("built-in objects", object_names, self.side.choice.set_names)
+        desk.background.run("scan.objects", object_names, self.side.choice.set_names)
         self._show_cell()
 
     def _connect(self) -> None:
         desk, side = self.desk, self.side
         side.primary.clicked.connect(self._press)
-        side.start_anew.clicked.connect(lambda: self._scan(ScanWishes(restart=True)))
+        side.start_over.clicked.connect(lambda: self._scan(ScanRequest(restart=True)))
         side.take_again.clicked.connect(self._take_selected)
         side.follow.clicked.connect(self._follow)
-        side.folder_chosen.connect(self._imports.take_folder)
-        side.mesh_chosen.connect(self._imports.take_mesh)
-        side.choice.changed.connect(self._look)
+        side.file_chosen.connect(self._import)
+        side.choice.changed.connect(self.update_actions)
         self.left.view_picked.connect(self._select)
         self.left.verdict.action.clicked.connect(self._act)
-        self._drops.arrived.connect(self._imports.take_dropped)
+        self._drops.arrived.connect(self._import)
+        self._drops.refused.connect(self.report)
         self._work.proposed.connect(self._take_proposal)
         desk.cell.changed.connect(self._show_cell)
         desk.arm.changed.connect(self._show_arm)
-        desk.jobs.news.connect(self._hear)
-        desk.jobs.started.connect(lambda _: self._look())
-        for signal in (desk.jobs.finished, desk.jobs.failed):
-            signal.connect(lambda *_: self._job_ended())
+        desk.jobs.event_received.connect(self._hear)
 
     # What the session holds
 
     @override
+    def content_key(self) -> ScanKey | None:
+        workspace = self.desk.workspace
+        return ScanKey(workspace.session, self.desk.cell.settings, workspace.parameters.seed)
+
+    @override
     def refresh(self) -> None:
         if self._work.is_scanning:
-            self._is_outdated = True  # the news tell; afterwards the files do
-            return
-        workspace = self.desk.workspace
-        if workspace.folder != self._folder:
-            self._folder = workspace.folder
-            self._contents = self._proposal = self._grown = None
-            self._images.forget()
-        cell, seed = self.desk.cell.settings, workspace.parameters.seed
-        load = partial(load_contents, workspace.session, cell, seed)
-        self.desk.background.run("scan", load, partial(self._take_over, self._folder), self._fail)
-        self._look()
+            self._is_outdated = True  # the scan reports itself; afterwards the files are read
+        else:
+            super().refresh()
 
-    def _take_over(self, folder: Path | None, contents: ScanContents) -> None:
-        if folder != self.desk.workspace.folder or self._work.is_scanning:
-            return
-        is_first = self._contents is None
-        self._contents = contents
+    @override
+    def forget(self) -> None:
+        self._proposal = self._grown = None
+        self._images.forget()
+        super().forget()
+
+    @override
+    def show_content(self, former: ScanContents | None) -> None:
+        if self.failure:
+            self._is_pressed = False
+            self.desk.message.emit(self.failure)
+        if self.content is not None and not self._work.is_scanning:
+            self._show_contents(self.content, is_first=former is None)
+        self.update_actions()
+        self._press_when_requested()
+
+    def _show_contents(self, contents: ScanContents, *, is_first: bool) -> None:
         self._own_views()
         self._views.take_over(contents)
         if is_first and contents.object_name is not None:
@@ -112,18 +110,11 @@ class ScanPage(Page):
             self._select(min(self._images.latest, len(contents.views) - 1))
         elif selected is not None and selected < len(self._views.views):
             self._images.select(selected, None)
-        self._look()
-        self._press_when_asked()
-
-    def _fail(self, error: PoursightError) -> None:
-        self._is_pressed = False
-        self.desk.told.emit(str(error))
 
     def _show_cell(self) -> None:
         settings = self.desk.cell.settings
         self.side.choice.show_cell(settings)
-        if settings is not None:
-            self.desk.background.run("cell in 3D", partial(picture_cell, settings), self.left.view.show_cell)
+        self.load("cell", settings, load_scan_cell, self.left.view.show_cell)
 
     # What the arm does now
 
@@ -138,11 +129,10 @@ class ScanPage(Page):
         elif isinstance(news, ViewDone):
             self._show_done(news)
         elif isinstance(news, MeshGrown):
-            prepare = partial(prepare_mesh, news.vertices_m, news.faces)
-            self.desk.background.run("growing mesh", prepare, self._show_growing)
+            self.load("growing mesh", news, _prepared, self._show_growing)
         else:
             return
-        self._look()
+        self.update_actions()
 
     def _show_done(self, news: ViewDone) -> None:
         index = self._views.done(news)
@@ -164,21 +154,17 @@ class ScanPage(Page):
             self.left.view.bend(None if state is None else state.joints_rad)
         if is_there is not self._has_arm:
             self._has_arm = is_there
-            self._look()
-
-    def _job_ended(self) -> None:
-        self._is_paused = False
-        self._look()
+            self.update_actions()
 
     def _own_views(self) -> None:
         """The table is about the open session from now on; until now it showed what was there before."""
-        if self._views_of != self._folder:
-            self._views_of = self._folder
+        if self._views_of != self.folder:
+            self._views_of = self.folder
             self._views.forget()
 
     def _show_views(self) -> None:
         self.left.grid.set_items(self._views.thumbnails())
-        self.left.make_room()
+        self.left.fit_thumbnails()
         self._show_frusta()
 
     def _show_frusta(self) -> None:
@@ -191,93 +177,99 @@ class ScanPage(Page):
         if self._work.is_scanning:
             return
         self._is_pressed = True
-        self._press_when_asked()
+        self._press_when_requested()
 
     def scan(self, source: str) -> None:
         """Choose what stands in the simulated cell and scan it, as soon as the page is ready."""
         self.side.choice.choose(source)
         self.press_primary()
 
-    def _press_when_asked(self) -> None:
-        if self._is_pressed and self._contents is not None and self.desk.cell.settings is not None:
+    def _press_when_requested(self) -> None:
+        if self._is_pressed and self.content is not None and self.desk.cell.settings is not None:
             self._is_pressed = False
             super().press_primary()
 
     def _press(self) -> None:
         now = self._situation()
         if not now.is_scanning:
-            self._scan(ScanWishes(restart=now.is_same and not now.can_continue))
+            self._scan(ScanRequest(restart=now.is_same and not now.can_continue))
             return
         self._is_paused = not self._is_paused
         if self._is_paused:
             self._work.pause()
         else:
             self._work.resume()
-        self._look()
+        self.update_actions()
 
-    def _scan(self, wishes: ScanWishes) -> None:
+    def _scan(self, request: ScanRequest) -> None:
         """Scan in the open session if it may hold this scan, otherwise in a new one."""
         now = self._situation()
         source = self.side.choice.source
         if self.desk.workspace.session is None or now.needs_new_session:
-            wishes = ScanWishes()
+            request = ScanRequest()
             if not self.desk.new_session(_REAL_CELL_NAME if source is None else Path(source).stem):
                 return
-        if not (wishes.retake or wishes.adaptive or now.can_continue):
+        if not (request.retake or request.adaptive or now.can_continue):
             self.left.view.show_alone(None)
             self.left.view.show_mesh(None)
         self._proposal = None
         self._can_pause = self._is_paused = False
         self._images.forget()
         self._follow()
-        self._work.scan(source, wishes)
+        self._work.scan(source, request)
         self.side.choice.forget_clearance()
-        self._look()
+        self.update_actions()
 
     def _take_selected(self) -> None:
         selected = self._images.selected
         if selected is not None:
-            self._scan(ScanWishes(retake=(self._views.views[selected].name,)))
+            self._scan(ScanRequest(retake=(self._views.views[selected].name,)))
 
     def _act(self) -> None:
-        deed = verdict_of(self._situation()).deed
-        if deed is Deed.JUDGE:
-            self._work.judge()
-        elif deed is Deed.PROPOSE:
+        action = verdict_of(self._situation()).action
+        if action is Action.CHECK:
+            self._work.check()
+        elif action is Action.PROPOSE:
             self._work.propose()
-        elif deed is Deed.TAKE_MORE:
-            self._scan(ScanWishes(adaptive=True))
-        elif deed is Deed.TAKE_POOR:
-            self._scan(ScanWishes(retake=tuple(self._views.poor)))
+        elif action is Action.TAKE_MORE:
+            self._scan(ScanRequest(adaptive=True))
+        elif action is Action.TAKE_POOR:
+            self._scan(ScanRequest(retake=tuple(self._views.poor)))
 
-    def _is_empty(self) -> bool:
-        """Whether the open session holds nothing yet."""
-        contents = self._contents
-        return self._folder is not None and contents is not None and contents.source == "nothing"
+    def _import(self, path: Path) -> None:
+        """Import a folder of views or a mesh; into a new session, unless the open one holds nothing yet."""
+        desk, contents = self.desk, self.content
+        if not desk.jobs.is_idle:
+            desk.message.emit(self.tr("Wait until the running job has ended, or cancel it; then import."))
+            return
+        is_empty = self.folder is not None and contents is not None and contents.source == "nothing"
+        if is_empty or desk.new_session(path.name if path.is_dir() else path.stem):
+            self._work.import_path(path)
 
     def _take_proposal(self, proposal: Proposal) -> None:
         self._proposal = proposal
-        self._look()
+        self.update_actions()
 
     def _select(self, index: int) -> None:
         self._images.select(index, self._work.frames_in_progress)
         self.left.grid.select(index)
         self._show_frusta()
-        self._look()
+        self.update_actions()
 
     def _follow(self) -> None:
         self._images.follow()
         self.left.grid.select(None)
         self._show_frusta()
-        self._look()
+        self.update_actions()
 
-    # How things stand
+    # What may be done, and what is said
 
     def _situation(self) -> Situation:
         desk = self.desk
         running, connected = desk.jobs.running, desk.arm.connected
         return Situation(
-            contents=self._contents,
+            contents=self.content,
+            failure=self.failure,
             views=self._views,
             source=self.side.choice.source,
             is_ready=self.side.choice.is_ready,
@@ -285,26 +277,28 @@ class ScanPage(Page):
             is_scanning=self._work.is_scanning,
             can_pause=self._can_pause,
             is_paused=self._is_paused,
-            is_judging=running is not None and running.page == self.KEY,
+            is_checking=running is not None and running.page == self.KEY,
             is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
             is_stale=desk.workspace.stages.get("quality") is Freshness.STALE,
             is_simulated=desk.cell.is_simulated,
             proposal=self._proposal,
         )
 
-    def _look(self) -> None:
-        """Show what may be done, and what is said."""
+    @override
+    def update_actions(self) -> None:
+        self._is_paused = self._is_paused and self._work.is_scanning
         now, side = self._situation(), self.side
         verdict = verdict_of(now)
-        self.left.verdict.say(
-            verdict.state, verdict.headline, verdict.details, verdict.action, verdict.tooltip
+        self.left.verdict.show_verdict(
+            verdict.state, verdict.headline, verdict.details, verdict.button, verdict.tooltip
         )
-        can_act = now.is_idle and (verdict.deed is Deed.JUDGE or now.can_scan)
-        self._offer(self.left.verdict.action, verdict.deed is not Deed.NOTHING, can_act)
-        self._offer(side.start_anew, now.can_continue and not now.is_scanning, now.can_scan)
+        has_selected = self._images.selected is not None
+        can_act = now.is_idle and (verdict.action is Action.CHECK or now.can_scan)
+        self._offer(self.left.verdict.action, verdict.action is not Action.NONE, can_act)
+        self._offer(side.start_over, now.can_continue and not now.is_scanning, now.can_scan)
         is_scan = now.contents is not None and now.contents.source == "scan"
-        self._offer(side.take_again, is_scan and now.is_same, now.can_take_again and self._has_selected)
-        self._offer(side.follow, now.is_scanning and self._has_selected)
+        self._offer(side.take_again, is_scan and now.is_same, now.can_take_again and has_selected)
+        self._offer(side.follow, now.is_scanning and has_selected)
         self._offer(side.import_folder, True, now.is_idle)
         self._offer(side.import_mesh, True, now.is_idle)
         side.primary.setText(now.primary_text)
@@ -322,6 +316,6 @@ class ScanPage(Page):
         button.setVisible(is_shown)
         button.setEnabled(is_enabled)
 
-    @property
-    def _has_selected(self) -> bool:
-        return self._images.selected is not None
+
+def _prepared(grown: MeshGrown) -> PreparedMesh:
+    return prepare_mesh(grown.vertices_m, grown.faces)

@@ -14,16 +14,17 @@ from app.gui.desk.jobs import RunningJob
 from app.gui.pages.scan.loading import FRAMES, load_hidden_area
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
-from app.scanning import IN_PROGRESS, ScanWishes
+from app.library.session_folder import UNFINISHED_SCAN
+from app.operations.scanning import ScanRequest
 
 HIDDEN_AREA_M2 = 2e-4
-"""Less than this of the inside is too little to look again for; the scan's verdict says the same."""
+"""Less than this of the inside is not worth further views; the scan's verdict uses the same limit."""
 _PATIENCE_REAL_S = 4.0
 """A real arm comes to rest before its process may be ended."""
 
 
 class ScanJobs(QObject):
-    """Scans, imports and judges, each followed by what makes sense next.
+    """Scans, imports and checks, each followed by what makes sense next.
 
     Attributes:
         proposed: the `Proposal` of further views.
@@ -31,7 +32,7 @@ class ScanJobs(QObject):
 
     proposed = Signal(object)
 
-    def __init__(self, desk: Desk, page: str, parent: QObject) -> None:
+    def __init__(self, desk: Desk, page: str, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._desk = desk
         self._page = page
@@ -46,11 +47,13 @@ class ScanJobs(QObject):
 
     @property
     def frames_in_progress(self) -> Path | None:
-        """Where the images of the scan under way are; none if there is no such scan."""
-        return self._folder / IN_PROGRESS / FRAMES if self._folder is not None and self.is_scanning else None
+        """Where the images of the running scan are; none if there is no such scan."""
+        return (
+            self._folder / UNFINISHED_SCAN / FRAMES if self._folder is not None and self.is_scanning else None
+        )
 
-    def scan(self, source: str | None, wishes: ScanWishes) -> None:
-        """Scan, then judge what was taken; cell and session must be there."""
+    def scan(self, source: str | None, request: ScanRequest) -> None:
+        """Scan, then check what was taken; cell and session must be there."""
         desk = self._desk
         cell = desk.cell.settings
         assert cell is not None, "the button is disabled before the cell is read"
@@ -62,34 +65,33 @@ class ScanJobs(QObject):
             ScanWork.scan,
             cell,
             source,
-            wishes,
-            then=self._judge_scan,
+            request,
+            then=self._check_scan,
             patience_s=1.0 if desk.cell.is_simulated else _PATIENCE_REAL_S,
         )
         self._scan = desk.jobs.running
         if self._scan is not None:
-            self._scan.start_again = partial(self._scan_again, source, wishes)
+            self._scan.start_again = partial(self._scan_again, source, request)
 
-    def judge(self) -> None:
-        """Reconstruct and judge the scan, and say where to look again."""
-        self._start(self.tr("Judge the scan"), SessionWork.reconstruct, then=self._look_again)
+    def check(self) -> None:
+        """Reconstruct and check the scan, and find further views if something was hidden."""
+        self._start(self.tr("Check the scan"), SessionWork.reconstruct, then=self._look_for_hidden)
 
     def propose(self) -> None:
         """Find views that show what is hidden."""
         cell = self._desk.cell.settings
         if cell is not None:
-            self._start(self.tr("Look where to look again"), ScanWork.propose, cell, then=self.proposed.emit)
+            self._start(self.tr("Find further views"), ScanWork.propose, cell, then=self.proposed.emit)
 
-    def import_scan(self, folder: Path) -> None:
-        """Take over a folder of views; the import judges them."""
-        self._start(self.tr("Import the scan"), SessionWork.import_scan, folder)
-
-    def import_mesh(self, path: Path) -> None:
-        """Take over a mesh."""
-        self._start(self.tr("Import the mesh"), SessionWork.import_mesh, path)
+    def import_path(self, path: Path) -> None:
+        """Take over a folder of views, which the import checks, or a mesh."""
+        if path.is_dir():
+            self._start(self.tr("Import the scan"), SessionWork.import_scan, path)
+        else:
+            self._start(self.tr("Import the mesh"), SessionWork.import_mesh, path)
 
     def pause(self) -> None:
-        """Let the arm stand after the view it is at."""
+        """Stop the arm after the current view."""
         self._desk.scan_host.order(ScanWork.pause)
 
     def resume(self) -> None:
@@ -115,21 +117,20 @@ class ScanJobs(QObject):
         self._folder = task.folder
         desk.jobs.start(title, self._page, host, method, task, *arguments, then=then, patience_s=patience_s)
 
-    def _scan_again(self, source: str | None, wishes: ScanWishes) -> None:
-        """After a failure: what was taken since the scan began is kept."""
-        has_kept = self._folder is not None and (self._folder / IN_PROGRESS).exists()
-        self.scan(source, replace(wishes, restart=wishes.restart and not has_kept))
+    def _scan_again(self, source: str | None, request: ScanRequest) -> None:
+        """After a failure: what was taken since the scan began is used."""
+        has_views = self._folder is not None and (self._folder / UNFINISHED_SCAN).exists()
+        self.scan(source, replace(request, restart=request.restart and not has_views))
 
-    def _judge_scan(self, _result: object) -> None:
+    def _check_scan(self, _result: object) -> None:
         if self._is_open:
-            self.judge()
+            self.check()
 
-    def _look_again(self, _result: object) -> None:
+    def _look_for_hidden(self, _result: object) -> None:
         session = self._desk.workspace.session
         if session is not None and self._is_open:
-            self._desk.background.run(
-                "hidden in the scan", partial(load_hidden_area, session), self._propose_if_hidden
-            )
+            load = partial(load_hidden_area, session)
+            self._desk.background.run("scan.hidden area", load, self._propose_if_hidden)
 
     def _propose_if_hidden(self, area_m2: float) -> None:
         if area_m2 > HIDDEN_AREA_M2 and self._is_open and self._desk.jobs.is_idle:

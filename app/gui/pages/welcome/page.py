@@ -1,16 +1,16 @@
-"""The first thing somebody sees: one button that leads to poured candies, and the ways to one's own work."""
+"""The first page: one button that leads to poured candies, and the user's own sessions."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QVBoxLayout, QWidget
+from typing_extensions import override
 
 from app.gui.desk.desk import Desk
 from app.gui.desk.memory import Memory
-from app.gui.pages.page import Page
+from app.gui.pages.page import PRIMARY, Page
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import heading, text_label
 from app.library.index import Library
 from app.library.places import sessions_folder
 from app.library.summary import SessionSummary
@@ -24,7 +24,10 @@ def _recent_sessions() -> tuple[SessionSummary, ...]:
 
 
 class WelcomePage(Page):
-    """Start with the mug in the simulated cell, with an own session, or where one left."""
+    """Start with the mug in the simulated cell, with a session of one's own, or where one left off.
+
+    Signals: `mug_wanted`, `new_wanted` and `open_wanted` when their buttons are pressed.
+    """
 
     KEY = "welcome"
     mug_wanted = Signal()
@@ -54,8 +57,8 @@ class WelcomePage(Page):
         row.addWidget(inside)
         row.addStretch(1)
 
+    @override
     def refresh(self) -> None:
-        """Show the last session and the newest ones."""
         _clear(self._last)
         last = self._memory.last_session
         if last is not None:
@@ -67,43 +70,34 @@ class WelcomePage(Page):
         self.desk.background.run("recent sessions", _recent_sessions, self._show_recent)
 
     def _heading(self) -> QWidget:
-        title = QLabel(self.tr("Can I pour into it?"))
-        title.setProperty("role", "title")
-        what = QLabel(
-            self.tr(
-                "The robot scans an object that nobody has modelled. Physics imagines whether candies "
-                "dropped on it would stay, and from where to pour. You look at the evidence, confirm, and "
-                "the arm pours."
-            )
-        )
-        what.setWordWrap(True)
         box = QWidget()
         column = QVBoxLayout(box)
         column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(title)
-        column.addWidget(what)
+        column.addWidget(text_label("", "title", self.tr("Can I pour into it?")))
+        explained = self.tr(
+            "The robot scans an unknown object. A physics simulation imagines whether candies dropped on it "
+            "would stay, and from where to pour. You check the evidence and confirm, and the arm pours."
+        )
+        column.addWidget(text_label("", text=explained))
         return box
 
     def _mug(self) -> QWidget:
         card = QFrame()
         card.setObjectName("side_panel")
         button = QPushButton(self.tr("Scan the mug"))
-        button.setObjectName("primary")
+        button.setObjectName(PRIMARY)
         button.setProperty("role", "primary")
         button.setMinimumHeight(6 * GRID_PX)
         button.clicked.connect(self.mug_wanted)
-        said = QLabel(
-            self.tr(
-                "In the simulated cell: nothing real moves, and everything else is as it will be. From here "
-                "it is a few clicks to poured candies; the bar at the bottom always names the next one."
-            )
+        explained = self.tr(
+            "In the simulated cell nothing real moves, and everything else works as on the real robot. A few "
+            "clicks lead to poured candies; the bar at the bottom always names the next step."
         )
-        said.setWordWrap(True)
         row = QHBoxLayout(card)
         row.setContentsMargins(2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX)
         row.setSpacing(2 * GRID_PX)
         row.addWidget(button)
-        row.addWidget(said, 1)
+        row.addWidget(text_label("", text=explained), 1)
         return card
 
     def _own(self) -> QHBoxLayout:
@@ -123,22 +117,18 @@ class WelcomePage(Page):
     def _show_recent(self, sessions: tuple[SessionSummary, ...]) -> None:
         _clear(self._recent)
         if sessions:
-            heading = QLabel(self.tr("Recent sessions"))
-            heading.setProperty("role", "heading")
-            self._recent.addWidget(heading)
+            self._recent.addWidget(heading(self.tr("Recent sessions")))
         for session in sessions:
             button = QPushButton(_line(session))
             button.setProperty("role", "link")
             button.setToolTip(str(session.path))
-            button.clicked.connect(lambda _=False, path=session.path: self._open(path))
+            button.clicked.connect(lambda _=False, path=session.path: self.desk.open_session(path))
             self._recent.addWidget(button)
-
-    def _open(self, path: Path) -> None:
-        self.desk.open_session(path)
 
 
 def _line(session: SessionSummary) -> str:
-    facts = [session.name, session.created[:10], session.source]
+    made = session.created_here
+    facts = [session.name, session.created[:10] if made is None else f"{made:%Y-%m-%d}", session.source]
     return "   ·   ".join(fact for fact in facts if fact)
 
 

@@ -1,4 +1,4 @@
-"""The edit itself, without Qt: what is set, what was refused and why."""
+"""The edit itself, without widgets: what is set, what was refused and why."""
 
 from __future__ import annotations
 
@@ -48,6 +48,9 @@ class Draft:
     first and tried again with the next one, so that both can be entered one after the other.
 
     Attributes:
+        facts: what the schema says of each parameter, by its dotted name.
+        kinds: of its values, as in `kinds`.
+        displays: how its values are written.
         parameters: as they are now; always valid.
         preset: what they are compared with.
         errors: `{dotted name: why the value just entered was refused}`.
@@ -55,6 +58,7 @@ class Draft:
 
     def __init__(self, parameters: Parameters, preset: Parameters) -> None:
         self.facts: dict[str, FieldFacts] = {fact.name: fact for fact in describe()}
+        self.kinds = kinds()
         self.displays = {name: Display.of(fact) for name, fact in self.facts.items()}
         self.parameters = parameters
         self.preset = preset
@@ -64,7 +68,7 @@ class Draft:
         self._preset_values = flatten(preset)
 
     def load(self, parameters: Parameters, preset: Parameters) -> None:
-        """Start anew from other parameters."""
+        """Start over from other parameters."""
         self.preset = preset
         self._preset_values = flatten(preset)
         self._adopt(parameters)
@@ -82,7 +86,7 @@ class Draft:
         return bool(self._values[name] != self._preset_values[name])
 
     def set(self, name: str, value: Any) -> bool:
-        """Set a parameter if that is possible, else keep the old value and say why in `errors`.
+        """Set a parameter if that is possible, else keep the old value and put the reason into `errors`.
 
         Returns:
             Whether the parameters changed.
@@ -122,5 +126,5 @@ class Draft:
             # the error speaks in the parameter's own unit; the row shows another
             self.errors[name] = f"{display.text(value)} is not possible; allowed is {display.range_text()}."
         else:
-            self.errors[name] = f"{error} It will be tried again together with your next change here."
+            self.errors[name] = f"{error} It will be tried again with your next change in this group."
             self._refused[name] = value

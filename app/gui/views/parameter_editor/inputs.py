@@ -2,48 +2,51 @@
 
 from __future__ import annotations
 
-from math import floor, log10
 from typing import Any
 
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QValidator
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLineEdit, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QLineEdit, QWidget
 
-from app.gui.views.parameter_editor.model import RowFacts
 from app.gui.views.parameter_editor.naming import Display, human_words
 
 _MOST = 1e12
-"""What can be typed; what is allowed is the schema's to say, in a sentence."""
+"""What can be typed; what is allowed is decided by the schema, which explains it in a sentence."""
 
 
 class NumberInput(QDoubleSpinBox):
     """A number in the shown unit with all its digits; steps stay in the range, typing need not."""
 
-    def __init__(self, facts: RowFacts, parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        display: Display,
+        value: float | None,
+        parent: QWidget | None = None,
+        *,
+        is_integer: bool = False,
+        is_optional: bool = False,
+    ) -> None:
         super().__init__(parent)
         self.setObjectName("parameter_number")
-        self.setAccessibleName(facts.title)
-        self._display = facts.display
-        self._is_integer = facts.kind == "integer"
+        self._display = display
+        self._is_integer = is_integer
+        self._is_optional = is_optional
         self.setKeyboardTracking(False)
         self.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.setDecimals(0 if self._is_integer else 10)
+        self.setDecimals(0 if is_integer else 10)
         self.setRange(-_MOST, _MOST)
-        self.setSpecialValueText(facts.display.text(None))  # stands for the least value: automatic
-        if self._display.unit:
-            self.setSuffix(self._display.unit if self._display.unit == "°" else f" {self._display.unit}")
-        self.set_data(facts.value)
+        self.setStepType(QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
+        self.setSpecialValueText(display.text(None))  # the least value means automatic
+        if display.unit:
+            self.setSuffix(display.unit if display.unit == "°" else f" {display.unit}")
+        self.setValue(self.minimum() if value is None else display.to_shown(value))
         self._before = self.text()
-
-    def set_data(self, value: float | None) -> None:
-        """Show a value of the parameter; None: automatic."""
-        self.setValue(self.minimum() if value is None else self._display.to_shown(value))
 
     def data(self) -> tuple[bool, Any]:
         """Return whether something else was entered, and the parameter's new value (None: automatic)."""
+        self.interpretText()
         if self.text() == self._before:
             return False, None
-        self.interpretText()
         if self.value() == self.minimum():
             return True, None
         return True, int(self.value()) if self._is_integer else self._display.to_data(self.value())
@@ -53,17 +56,20 @@ class NumberInput(QDoubleSpinBox):
         return f"{value:.12g}"
 
     def valueFromText(self, text: str) -> float:
-        """Decimal point or comma; what is no number leaves the value as it is."""
+        """Decimal point or comma; empty is automatic; anything else leaves the value as it is."""
+        bare = self._bare(text)
+        if not bare and self._is_optional:
+            return self.minimum()
         try:
-            return float(self._bare(text))
+            return float(bare)
         except ValueError:
             return self.value()
 
     def validate(self, text: str, at: int) -> tuple[QValidator.State, str, int]:
-        """A number is a number, however large; an empty line is on the way to one."""
-        if text == self.specialValueText():
-            return QValidator.State.Acceptable, text, at
+        """Accept any number, however large; an empty line may become one."""
         bare = self._bare(text)
+        if text == self.specialValueText() or (not bare and self._is_optional):
+            return QValidator.State.Acceptable, text, at
         if any(letter not in "+-.0123456789eE" for letter in bare):
             return QValidator.State.Invalid, text, at
         try:
@@ -81,33 +87,30 @@ class NumberInput(QDoubleSpinBox):
         if facts.low is None or facts.high is None:
             return
         low, high = self._display.to_shown(facts.low), self._display.to_shown(facts.high)
-        value = low if self.value() == self.minimum() else self.value() + steps * self._step(steps)
-        value = min(max(value, low), high)
-        self.setValue(float(f"{value:.10g}"))
+        if self.value() == self.minimum():
+            self.setValue(low)
+        elif self.value() == 0:
+            self.setValue(max(low, steps * (1.0 if self._is_integer else high / 100)))
+        else:
+            super().stepBy(steps)
+        self.setValue(min(max(self.value(), low), high))
         self.selectAll()
-
-    def _step(self, steps: int) -> float:
-        size = abs(self.value())
-        if size == 0:
-            high = self._display.facts.high
-            size = self._display.to_shown(high) / 10 if high else 1.0
-        elif steps * self.value() < 0:
-            size *= 0.999  # from 10 down it goes in the steps below 10, as it came up
-        step = 10.0 ** (floor(log10(size)) - 1)
-        return max(step, 1.0) if self._is_integer else step
 
 
 class ChoiceInput(QComboBox):
     """One of a few words; opens at once."""
 
-    def __init__(self, facts: RowFacts, parent: QWidget | None = None) -> None:
+    def __init__(self, display: Display, value: str, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("parameter_choice")
-        self.setAccessibleName(facts.title)
-        for word in facts.display.facts.choices:
+        for word in display.facts.choices:
             self.addItem(human_words(word), word)
-        self.setCurrentIndex(self.findData(facts.value))
+        self.setCurrentIndex(self.findData(value))
         QTimer.singleShot(0, self, self._open)
+
+    def data(self) -> tuple[bool, Any]:
+        """Return that a choice was made, and which."""
+        return True, self.currentData()
 
     def _open(self) -> None:
         if self.isVisible() and self.window().isActiveWindow():
@@ -117,14 +120,15 @@ class ChoiceInput(QComboBox):
 class PointInput(QLineEdit):
     """Three numbers in the shown unit, separated by commas or blanks."""
 
-    def __init__(self, facts: RowFacts, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, display: Display, value: tuple[float, ...] | None, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.setObjectName("parameter_point")
-        self.setAccessibleName(facts.title)
-        self.setPlaceholderText(f"x, y, z {facts.display.unit}")
-        self._display: Display = facts.display
-        if facts.value is not None:
-            self.setText(", ".join(self._display.number(number) for number in facts.value))
+        self.setPlaceholderText(f"x, y, z {display.unit}")
+        self._display = display
+        if value is not None:
+            self.setText(", ".join(display.number(number) for number in value))
         self._before = self.text()
         self.setAlignment(Qt.AlignmentFlag.AlignRight)
 

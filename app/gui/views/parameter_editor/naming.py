@@ -15,7 +15,7 @@ from core.parameters import FieldFacts
 _SUFFIXES = ("_m_s2", "_rad", "_hz", "_kg", "_m", "_s")
 _WORDS = {"aabb": "AABB", "vhacd": "V-HACD", "coacd": "CoACD", "idt": "L_idt"}
 _KINDS = {"s": "time", "rad": "angle", "m/s^2": "strength"}
-"""What tells two parameters apart that differ by their unit only."""
+"""Distinguishes two parameters that differ by their unit only."""
 _FACTORS = {"m": ("mm", 1000.0), "kg": ("g", 1000.0), "rad": ("°", 0.0), "m/s^2": ("m/s²", 1.0)}
 
 
@@ -39,7 +39,7 @@ def _capital(text: str) -> str:
 
 
 def titles(facts: list[FieldFacts]) -> dict[str, str]:
-    """Return `{dotted name: title}`, told apart by the kind of quantity where two in a group are alike."""
+    """Return `{dotted name: title}`, with the kind of quantity where two in a group would be alike."""
     alike = Counter(map(_group_and_bare, facts))
     found: dict[str, str] = {}
     for fact in facts:

@@ -1,4 +1,4 @@
-"""The view's camera as plain numbers: it turns about a point, z is up."""
+"""The view's camera as plain numbers: it orbits a point, z is up."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FOV_DEG = 36.0
 """Of the view's height; narrow, so that upright things look upright."""
 _MARGIN = 1.16
 _ROUNDS = 4
-"""Near things look larger: what is centred is found by trying."""
+"""Near things look larger: the centre is found by iteration."""
 _NEAR, _FAR = 0.02, 60.0
 """Of the distance."""
 _NEAREST_M, _FARTHEST_M = 0.02, 50.0
@@ -57,7 +57,7 @@ class Camera:
     """Where the view is seen from.
 
     Attributes:
-        center_m: (3,) what it looks at and turns about.
+        center_m: (3,) what it looks at and orbits.
         distance_m: of the eye from there.
         azimuth_deg: direction from the centre to the eye, from +x counter-clockwise seen from above.
         elevation_deg: of the eye above the horizon, -90 to 90.

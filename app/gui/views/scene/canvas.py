@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication, QImage, QOpenGLContext
@@ -12,35 +12,40 @@ from app.gui.theme import Theme
 from app.gui.views.scene.camera import Camera
 from app.gui.views.scene.parts import Layer
 
+if TYPE_CHECKING:
+    from app.gui.views.scene.view import SceneView
 
-class Canvas(Protocol):
-    """Something that shows layers.
 
-    Attributes:
-        widget: on the screen.
-        can_draw: whether there is more to see than a sentence.
-    """
+class BlankCanvas(QLabel):
+    """A sentence instead of a picture; takes the calls of `SceneView` and does nothing."""
 
-    widget: QWidget
-    can_draw: bool
+    can_draw = False
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setText(self.tr("No 3D view: this display offers no OpenGL. Everything else works."))
+        self.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.setWordWrap(True)
+        self.setObjectName("no_opengl")
 
     def put(self, name: str, layer: Layer) -> None:
-        """Show a layer, instead of the one that had its name."""
+        """Nothing is shown."""
 
     def drop(self, name: str) -> None:
-        """Show a layer no more."""
+        """Nothing was shown."""
 
     def set_camera(self, camera: Camera) -> None:
-        """See from elsewhere."""
+        """There is no picture to change."""
 
     def set_theme(self, theme: Theme) -> None:
-        """Change the colours."""
-
-    def update(self) -> None:
-        """Show what changed since, soon."""
+        """The sentence follows the palette by itself."""
 
     def grab_image(self) -> QImage:
-        """The picture as it is now."""
+        """The sentence."""
+        return self.grab().toImage()
+
+
+Canvas: TypeAlias = "SceneView | BlankCanvas"
 
 
 def make_canvas(theme: Theme, parent: QWidget) -> Canvas:
@@ -57,35 +62,3 @@ def has_opengl() -> bool:
     if QGuiApplication.platformName() in ("offscreen", "minimal"):
         return False
     return QOpenGLContext().create()
-
-
-class BlankCanvas:
-    """A sentence instead of a picture."""
-
-    can_draw = False
-
-    def __init__(self, parent: QWidget) -> None:
-        label = QLabel(parent.tr("No 3D view: this display offers no OpenGL. Everything else works."), parent)
-        label.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        label.setWordWrap(True)
-        label.setObjectName("no_opengl")
-        self.widget: QWidget = label
-
-    def put(self, name: str, layer: Layer) -> None:
-        """Nothing is shown."""
-
-    def drop(self, name: str) -> None:
-        """Nothing was shown."""
-
-    def set_camera(self, camera: Camera) -> None:
-        """Nothing is seen."""
-
-    def set_theme(self, theme: Theme) -> None:
-        """The sentence follows the palette by itself."""
-
-    def update(self) -> None:
-        """Nothing changes."""
-
-    def grab_image(self) -> QImage:
-        """The sentence."""
-        return self.widget.grab().toImage()

@@ -1,18 +1,22 @@
-"""Parts as pyqtgraph's items. Surfaces are drawn by our own shader, lit from the eye; needs OpenGL 2.1."""
+"""Layers as pyqtgraph's items. Surfaces are drawn by our own shader, lit from the eye; needs OpenGL 2.1."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, TypeAlias
 
 import numpy as np
 from OpenGL import GL
 from OpenGL.GL import shaders
+from pyqtgraph import Transform3D
 from pyqtgraph.opengl import GLLinePlotItem, GLScatterPlotItem
 from pyqtgraph.opengl.GLGraphicsItem import GLGraphicsItem
-from PySide6.QtOpenGL import QOpenGLBuffer
+from PySide6.QtOpenGL import QOpenGLBuffer, QOpenGLFramebufferObject, QOpenGLFramebufferObjectFormat
 
-from app.gui.views.scene.parts import Part
-from core.geometry import AnyArray
+from app.gui.theme import Theme
+from app.gui.views.scene.camera import Size
+from app.gui.views.scene.parts import Layer, Part
+from core.geometry import AnyArray, FloatArray
 
 _VERTEX = """
 #version 120
@@ -64,6 +68,9 @@ _OPAQUE = {**_BLENDED, GL.GL_BLEND: False}
 _LINES = {**_BLENDED, "glDepthRange": (0.0, 1 - 3e-5)}
 """Lines on a surface are before it: by 1.5 mm when seen from a metre away."""
 _ON_TOP = {**_BLENDED, GL.GL_DEPTH_TEST: False}
+_RANK_OPAQUE, _RANK_LINES, _RANK_SEE_THROUGH, _RANK_ON_TOP = 0.0, 1.0, 2.0, 1e6
+"""The order of drawing."""
+_SAMPLES = 4
 
 
 class SurfaceProgram:
@@ -129,7 +136,7 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
         GL.glUseProgram(0)
 
     def _bind(self) -> list[int]:
-        """Tell the shader where its numbers are."""
+        """Bind the buffers to the shader's attributes."""
         sizes = {"position": (_POSITION, 3), "normal": (_NORMAL, 3), "color": (_COLOR, 4)}
         enabled = []
         for name, (location, n) in sizes.items():
@@ -153,7 +160,7 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
         self._buffers["index"].release()
 
     def _upload(self) -> None:
-        """Bring to the card what has changed; a vertex without a place goes where its face has no area."""
+        """Upload what has changed; faces of vertices without a position collapse at the origin."""
         part = self._part
         if "position" in self._dirty:
             self._store("position", np.nan_to_num(part.vertices_m))
@@ -243,3 +250,101 @@ def item_of(part: Part, pixel_ratio: float) -> PartItem:
     if part.kind == "surface":
         return SurfaceItem(part)
     return LineItem(part, pixel_ratio) if part.kind == "lines" else PointItem(part, pixel_ratio)
+
+
+class DrawnLayer:
+    """Items of a layer.
+
+    Attributes:
+        layer: what is drawn.
+        n_triangles: how many.
+    """
+
+    def __init__(self, layer: Layer, theme: Theme, pixel_ratio: float) -> None:
+        self.layer = layer
+        self._items = [item_of(part, pixel_ratio) for part in layer.parts]
+        self._revisions = [part.revision for part in layer.parts]
+        surfaces = [item for item in self._items if isinstance(item, SurfaceItem)]
+        self.is_see_through = bool(surfaces) and any(part.paint.opacity < 1 for part in layer.parts)
+        self._depth = DepthItem(surfaces) if self.is_see_through else None
+        self.n_triangles = sum(part.n_triangles for part in layer.parts)
+        self.take_theme(theme)
+
+    @property
+    def items(self) -> list[GLGraphicsItem]:
+        """Everything to be drawn."""
+        return [*self._items, self._depth] if self._depth is not None else self._items
+
+    def take_theme(self, theme: Theme) -> None:
+        """Draw in a theme's colours."""
+        for item, part in zip(self._items, self.layer.parts, strict=True):
+            item.take_colors(part.paint.colors(theme))
+
+    def follow(self) -> None:
+        """Bring the items to where and how the layer is now."""
+        for item in self.items:
+            item.setVisible(self.layer.is_visible)
+        if not self.layer.is_visible:
+            return
+        for k, (item, part) in enumerate(zip(self._items, self.layer.parts, strict=True)):
+            item.setTransform(Transform3D(self.layer.T_world_layer @ part.T_layer_part))
+            if self._revisions[k] != part.revision:
+                item.take_vertices()
+                self._revisions[k] = part.revision
+
+    def take_rank(self, rank: int) -> None:
+        """Be drawn after see-through layers of lower rank; opaque ones come first anyway."""
+        order = {"lines": _RANK_LINES, "points": _RANK_LINES}
+        surface = _RANK_SEE_THROUGH + rank + 0.5 if self.is_see_through else _RANK_OPAQUE
+        for item, part in zip(self._items, self.layer.parts, strict=True):
+            item.setDepthValue(_RANK_ON_TOP if part.is_on_top else order.get(part.kind, surface))
+        if self._depth is not None:
+            self._depth.setDepthValue(_RANK_SEE_THROUGH + rank)
+
+    def distance_m(self, eye_m: FloatArray) -> float:
+        """How far the layer's middle is from the eye."""
+        outline = self.layer.outline_m()
+        return float(np.linalg.norm(outline.mean(axis=0) - eye_m)) if len(outline) else 0.0
+
+
+class SmoothBuffer:
+    """A multisampled buffer, kept while its view is on the screen: slow to make, and 40 MB large."""
+
+    def __init__(self) -> None:
+        self._buffer: QOpenGLFramebufferObject | None = None
+
+    def draw(self, draw: Callable[[], None], size: Size, target: int) -> None:
+        """Draw with several samples a pixel and bring their mean to a frame buffer.
+
+        Args:
+            draw: draws, whatever it draws on.
+            size: in the screen's pixels.
+            target: the frame buffer's name; the current one afterwards.
+        """
+        self.prepare(size)
+        buffer = self._buffer
+        assert buffer is not None
+        buffer.bind()
+        draw()
+        GL.glBindFramebuffer(GL.GL_READ_FRAMEBUFFER, buffer.handle())
+        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, target)
+        GL.glBlitFramebuffer(0, 0, *size, 0, 0, *size, GL.GL_COLOR_BUFFER_BIT, GL.GL_NEAREST)
+        GL.glBindFramebuffer(GL.GL_FRAMEBUFFER, target)
+
+    def release(self) -> None:
+        """Give the memory back; the view's context must be current."""
+        self._buffer = None
+
+    def is_ready(self, size: Size) -> bool:
+        """Whether drawing needs no preparation."""
+        return self._buffer is not None and self._buffer.size().toTuple() == size
+
+    def prepare(self, size: Size) -> None:
+        """Do what takes long; the view's context must be current."""
+        if self.is_ready(size):
+            return
+        self.release()
+        form = QOpenGLFramebufferObjectFormat()
+        form.setAttachment(QOpenGLFramebufferObject.Attachment.CombinedDepthStencil)
+        form.setSamples(_SAMPLES)
+        self._buffer = QOpenGLFramebufferObject(*size, form)

@@ -1,24 +1,39 @@
-"""Where a 3D view is seen from, and what the mouse and the keys do in it."""
+"""Where a 3D view is seen from, and what mouse and keys do in it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
 import numpy as np
-from PySide6.QtCore import QObject, QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import QApplication
 
 from app.gui.views.scene.camera import Camera, Ray, Size
 from app.gui.views.scene.canvas import Canvas
-from app.gui.views.scene.crop_box import CropBox
-from app.gui.views.scene.input import SceneInput
+from app.gui.views.scene.layers import CropBox
 from app.gui.views.scene.parts import Layer
 from core.geometry import invert_pose
+
+_TURN_DEG_PX = 0.35
+_ZOOM_PER_STEP = 0.999
+_KEY_TURN_DEG = 5.0
+_KEY_ZOOM = 0.9
+_TURNING_KEYS = {
+    Qt.Key.Key_Left: (-_KEY_TURN_DEG, 0.0),
+    Qt.Key.Key_Right: (_KEY_TURN_DEG, 0.0),
+    Qt.Key.Key_Up: (0.0, _KEY_TURN_DEG),
+    Qt.Key.Key_Down: (0.0, -_KEY_TURN_DEG),
+}
+_ZOOMING_KEYS = {Qt.Key.Key_Plus: _KEY_ZOOM, Qt.Key.Key_Equal: _KEY_ZOOM, Qt.Key.Key_Minus: 1 / _KEY_ZOOM}
 
 
 class Navigator(QObject):
     """Moves the camera, picks, and drags the handles of boxes.
 
-    It fits layers into view until the user moves: when one of them appears and when the view's size changes.
+    Left drag turns, middle or shift and left moves, the wheel enlarges, a double click centres. The arrow
+    keys turn, plus and minus enlarge. Layers are fitted into view until the user moves: when one of them
+    appears and when the view's size changes.
 
     Signals:
         picked: layer and index of what a click met.
@@ -31,19 +46,20 @@ class Navigator(QObject):
     azimuth_changed = Signal(float)
 
     def __init__(self, canvas: Canvas, layers: Mapping[str, Layer], boxes: Mapping[str, CropBox]) -> None:
-        super().__init__(canvas.widget)
+        super().__init__(canvas)
         self.camera = Camera()
         self._canvas = canvas
         self._layers = layers
         self._boxes = boxes
         self._dragged: tuple[str, int] | None = None
         self._fitted: tuple[str, ...] = ()
-        self._soon = QTimer(self)
-        self._soon.setSingleShot(True)
-        self._soon.setInterval(0)
+        self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self.refit)
         self._stays_fitted = True
-        self._input = SceneInput(canvas.widget, self)
+        self._last = QPointF()
+        self._pressed_at: QPointF | None = None
+        canvas.setMouseTracking(True)
+        canvas.installEventFilter(self)
 
     def look_from(self, direction: str) -> None:
         """Look from one of `DIRECTIONS`."""
@@ -58,7 +74,7 @@ class Navigator(QObject):
         self.refit()
 
     def fit_whatever_comes(self) -> None:
-        """Bring into view all layers that will be set."""
+        """Bring into view all layers that are set from now on."""
         self._fitted = ()
         self._stays_fitted = True
 
@@ -77,73 +93,121 @@ class Navigator(QObject):
         if len(points):
             self._move(self.camera.fitted(points, self._size()))
 
-    # What `SceneInput` tells
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Take the events of mouse and keys, leave all others."""
+        if isinstance(event, QWheelEvent):
+            self._zoom(_ZOOM_PER_STEP ** event.angleDelta().y())
+            return True
+        if isinstance(event, QKeyEvent) and event.type() in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
+            self._key(event)
+            return True
+        if not isinstance(event, QMouseEvent):
+            return super().eventFilter(watched, event)
+        handlers = {
+            QEvent.Type.MouseButtonPress: self._press,
+            QEvent.Type.MouseMove: self._follow,
+            QEvent.Type.MouseButtonRelease: self._release,
+            QEvent.Type.MouseButtonDblClick: self._double_click,
+        }
+        handlers[event.type()](event)
+        return True
 
-    def turn(self, azimuth_deg: float, elevation_deg: float) -> None:
-        """Turn about the centre."""
-        self._stays_fitted = False
-        self._move(self.camera.turned(azimuth_deg, elevation_deg))
-        self.azimuth_changed.emit(self.camera.azimuth_deg)
+    def _key(self, event: QKeyEvent) -> None:
+        """Turn and enlarge when a key is pressed; leave other keys to the page."""
+        key = Qt.Key(event.key())
+        event.setAccepted(key in _TURNING_KEYS or key in _ZOOMING_KEYS)
+        if event.type() == QEvent.Type.KeyRelease:
+            return
+        if key in _TURNING_KEYS:
+            self._turn(*_TURNING_KEYS[key])
+        elif key in _ZOOMING_KEYS:
+            self._zoom(_ZOOMING_KEYS[key])
 
-    def pan(self, right_px: float, down_px: float) -> None:
-        """Move the picture."""
-        self._stays_fitted = False
-        self._move(self.camera.panned(right_px, down_px, self._size()))
+    def _press(self, event: QMouseEvent) -> None:
+        self._last = event.position()
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._pressed_at = event.position()
+            self._dragged = self._handle(event.position())
 
-    def zoom(self, factor: float) -> None:
-        """Go nearer (below 1) or farther."""
-        self._stays_fitted = False
-        self._move(self.camera.zoomed(factor))
+    def _follow(self, event: QMouseEvent) -> None:
+        step = event.position() - self._last
+        self._last = event.position()
+        if self._pressed_at is not None and _is_far(self._pressed_at, event.position()):
+            self._pressed_at = None
+        if self._dragged is not None:
+            self._drag(*self._dragged, event.position())
+        elif not event.buttons():
+            self._hover(event.position())
+        elif self._pressed_at is None:
+            self._look(event, step)
 
-    def click(self, at: QPointF) -> None:
-        """Tell what is there."""
+    def _look(self, event: QMouseEvent, step: QPointF) -> None:
+        has_shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+        if event.buttons() == Qt.MouseButton.LeftButton and not has_shift:
+            self._turn(-_TURN_DEG_PX * step.x(), _TURN_DEG_PX * step.y())
+        else:
+            self._change(self.camera.panned(step.x(), step.y(), self._size()))
+
+    def _release(self, event: QMouseEvent) -> None:
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        if self._dragged is not None:
+            self._drop_handle()
+        elif self._pressed_at is not None:
+            self._pick(event.position())
+        self._pressed_at = None
+
+    def _pick(self, at: QPointF) -> None:
         hit = self._hit(self._ray(at))
         if hit is not None:
             self.picked.emit(hit[1], hit[2])
 
-    def center_on(self, at: QPointF) -> None:
-        """Bring what is there to the centre."""
-        ray = self._ray(at)
+    def _double_click(self, event: QMouseEvent) -> None:
+        if event.button() != Qt.MouseButton.LeftButton:
+            return
+        ray = self._ray(event.position())
         hit = self._hit(ray)
         if hit is not None:
-            self._stays_fitted = False
-            self._move(self.camera.centered(ray.at(hit[0])))
+            self._change(self.camera.centered(ray.at(hit[0])))
 
-    def take_handle(self, at: QPointF) -> bool:
-        """Whether a box's handle is there; it is dragged from now on."""
-        self._dragged = self._handle(at)
-        return self._dragged is not None
+    def _turn(self, azimuth_deg: float, elevation_deg: float) -> None:
+        self._change(self.camera.turned(azimuth_deg, elevation_deg))
+        self.azimuth_changed.emit(self.camera.azimuth_deg)
 
-    def drag_handle(self, at: QPointF) -> None:
-        """Move the side of the box whose handle was taken, if the box is still there."""
-        if self._dragged is None or self._dragged[0] not in self._boxes:
-            return
-        name, handle = self._dragged
-        box = self._boxes[name]
-        box.drag(handle, self._ray(at).transformed(invert_pose(box.layer.T_world_layer)))
-        self._canvas.update()
+    def _zoom(self, factor: float) -> None:
+        self._change(self.camera.zoomed(factor))
 
-    def drop_handle(self) -> None:
-        """Tell the box as it is now."""
+    def _change(self, camera: Camera) -> None:
+        """Move the camera for the user, who decides from now on what is in view."""
+        self._stays_fitted = False
+        self._move(camera)
+
+    def _drag(self, name: str, handle: int, at: QPointF) -> None:
+        """Move the side of a box, if the box is still there."""
+        if name in self._boxes:
+            box = self._boxes[name]
+            box.drag(handle, self._ray(at).transformed(invert_pose(box.layer.T_world_layer)))
+            self._canvas.update()
+
+    def _drop_handle(self) -> None:
         dragged, self._dragged = self._dragged, None
         if dragged is not None and dragged[0] in self._boxes:
             box = self._boxes[dragged[0]]
             self.box_edited.emit(dragged[0], box.min_m.copy(), box.max_m.copy())
 
-    def hover(self, at: QPointF) -> None:
+    def _hover(self, at: QPointF) -> None:
         """Show by the cursor that there is a handle."""
         if self._handle(at) is not None:
-            self._canvas.widget.setCursor(Qt.CursorShape.SizeAllCursor)
+            self._canvas.setCursor(Qt.CursorShape.SizeAllCursor)
         else:
-            self._canvas.widget.unsetCursor()
+            self._canvas.unsetCursor()
 
     def _move(self, camera: Camera) -> None:
         self.camera = camera
         self._canvas.set_camera(camera)
 
     def _size(self) -> Size:
-        widget = self._canvas.widget
-        return max(widget.width(), 1), max(widget.height(), 1)
+        return max(self._canvas.width(), 1), max(self._canvas.height(), 1)
 
     def _ray(self, at: QPointF) -> Ray:
         return self.camera.ray((at.x(), at.y()), self._size())
@@ -164,3 +228,7 @@ class Navigator(QObject):
             if handle is not None:
                 return name, handle
         return None
+
+
+def _is_far(start: QPointF, end: QPointF) -> bool:
+    return (end - start).manhattanLength() >= QApplication.startDragDistance()

@@ -1,30 +1,36 @@
-"""What lies over a 3D view: the colour scale and the buttons that choose where to look from."""
+"""What lies over a 3D view: labels, the colour scale, and the buttons that choose the viewpoint."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import floor, log10
 
 import numpy as np
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPaintEvent
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
-from app.gui.theme import GRID_PX, theme_of
-from app.gui.views.scene.colors import ColorScale
+from app.gui.theme import GRID_PX, Theme, theme_of
+from app.gui.views.scene.camera import Camera, Size
+from app.gui.views.scene.parts import ColorScale, Layer
+from core.geometry import transform_points
 
 _N_TICKS = 5
 _BAR_PX = 14
+_LABEL_GAP_PX = 10
+_LABEL_MARGIN_PX = 4
+_LABEL_ALPHA = 0.85
 
 
 class ViewButtons(QWidget):
     """Iso, top, front, side, and fit.
 
     Signals:
-        looked: at one of `camera.DIRECTIONS`.
-        fitted: everything is to be seen.
+        viewpoint_chosen: one of `camera.DIRECTIONS`.
+        fitted: everything is to be brought into view.
     """
 
-    looked = Signal(str)
+    viewpoint_chosen = Signal(str)
     fitted = Signal()
 
     def __init__(self, parent: QWidget) -> None:
@@ -33,14 +39,14 @@ class ViewButtons(QWidget):
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(GRID_PX // 2)
         words = {
-            "iso": (self.tr("Iso"), self.tr("Look from above and aside")),
+            "iso": (self.tr("Iso"), self.tr("Look from above at an angle")),
             "top": (self.tr("Top"), self.tr("Look straight down; y points up")),
             "front": (self.tr("Front"), self.tr("Look along y")),
-            "side": (self.tr("Side"), self.tr("Look against x")),
+            "side": (self.tr("Side"), self.tr("Look along −x")),
         }
         for direction, (text, tip) in words.items():
             button = self._button(text, tip, direction)
-            button.clicked.connect(lambda _=False, direction=direction: self.looked.emit(direction))
+            button.clicked.connect(lambda _=False, direction=direction: self.viewpoint_chosen.emit(direction))
             row.addWidget(button)
         fit = self._button(self.tr("Fit"), self.tr("Bring everything into view"), "fit")
         fit.clicked.connect(lambda: self.fitted.emit())
@@ -128,10 +134,43 @@ class ScaleLegend(QWidget):
 
 
 def tick_texts(scale: ColorScale) -> list[str]:
-    """The numbers beside a scale, from below; as many decimals as tell them apart."""
+    """The numbers beside a scale, from the lowest; with enough decimals to distinguish them."""
     step = (scale.high - scale.low) / (_N_TICKS - 1)
     decimals = max(0, 1 - floor(log10(step))) if step > 0 else 0
     texts = [f"{scale.low + k * step:.{decimals}f}" for k in range(_N_TICKS)]
     if decimals and all(text.endswith("0") for text in texts):
         texts = [text[:-1].rstrip(".") for text in texts]
     return texts
+
+
+def paint_labels(
+    painter: QPainter, layers: Sequence[Layer], theme: Theme, camera: Camera, size: Size
+) -> None:
+    """Paint the texts of layers beside their points, moved so far that they are within the view."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    places = [transform_points(layer.T_world_layer, layer.parts[0].vertices_m[:1]) for layer in layers]
+    pixels = camera.project(np.vstack(places), size)
+    for layer, (x, y) in zip(layers, pixels, strict=True):
+        if 0 <= x <= size[0] and 0 <= y <= size[1]:
+            _paint_label(painter, layer.text, QPointF(x, y), theme, size)
+
+
+def _paint_label(painter: QPainter, text: str, at: QPointF, theme: Theme, size: Size) -> None:
+    metrics = painter.fontMetrics()
+    box = QRectF(
+        0, 0, metrics.horizontalAdvance(text) + 2 * _LABEL_MARGIN_PX, metrics.height() + _LABEL_MARGIN_PX
+    )
+    box.moveBottomLeft(at + QPointF(_LABEL_GAP_PX, -_LABEL_GAP_PX))
+    if box.right() > size[0]:
+        box.moveRight(at.x() - _LABEL_GAP_PX)
+    if box.top() < 0:
+        box.moveTop(at.y() + _LABEL_GAP_PX)
+    background = theme.color("surface")
+    background.setAlphaF(_LABEL_ALPHA)
+    painter.setPen(QPen(theme.color("muted"), 1))
+    painter.drawLine(at, box.center())
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(background)
+    painter.drawRoundedRect(box, 3, 3)
+    painter.setPen(theme.color("text"))
+    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)

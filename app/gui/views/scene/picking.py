@@ -1,4 +1,4 @@
-"""What a click meets. Done in numpy when there is a click, never per frame."""
+"""What a click hits. Done in numpy when there is a click, never per frame."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _REACH_PX = 8
 
 
 class Target(Protocol):
-    """Something a click can meet."""
+    """Something a click can hit."""
 
     def hit(self, ray: Ray) -> Hit | None:
         """The first thing on a line of sight in the target's frame, or None."""
@@ -27,7 +27,7 @@ class Target(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class FaceTarget:
-    """Triangles; the index is the face's, or what stands for it.
+    """Triangles; the index is the face's, or the one given for it.
 
     Attributes:
         vertices_m: (N, 3).

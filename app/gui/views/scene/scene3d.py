@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -11,34 +11,41 @@ from PySide6.QtGui import QImage, QPalette, QResizeEvent
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
-from app.gui.views.scene.arm import Arm
-from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.canvas import make_canvas
-from app.gui.views.scene.colors import ColorScale
-from app.gui.views.scene.crop_box import CropBox
-from app.gui.views.scene.frusta import Frustum, frusta_layer
-from app.gui.views.scene.layers import arrow_layer, label_layer, line_layer, mesh_layer, points_layer
+from app.gui.views.scene.layers import (
+    Arm,
+    Candies,
+    CropBox,
+    Frustum,
+    arrow_layer,
+    frusta_layer,
+    label_layer,
+    line_layer,
+    mesh_layer,
+    points_layer,
+)
 from app.gui.views.scene.navigation import Navigator
 from app.gui.views.scene.overlay import ScaleLegend, ViewButtons
-from app.gui.views.scene.parts import Layer
-from app.gui.views.scene.prepared import PreparedMesh, prepare_mesh
+from app.gui.views.scene.parts import ColorScale, Layer, PreparedMesh, prepare_mesh
+from app.gui.views.scene.shapes import box_mesh
 from core.geometry import BoolArray, FloatArray
-from core.motion.arm_models import ArmModel
-from core.motion.arm_shape import Capsule
+from core.motion.arm_models import ArmModel, Capsule
+
+_WARM_UP_PX = 32
 
 
 class Scene3D(QWidget):
     """Shows layers in 3D: metres, z up, all poses in one world.
 
-    A layer is set by its name; setting it again replaces it and keeps its pose and whether it is shown.
+    A layer is set by its name; setting it again replaces it but keeps its pose and visibility.
     Moving a layer, an arm's joints or the candies is cheap enough for every frame. Where there is no OpenGL
-    (as in offscreen tests) the widget says so in a sentence, and everything else works.
+    (as in offscreen tests) the widget shows a sentence instead, and everything else works.
 
     Signals:
-        picked: a click met a layer: its name, and the index of the frustum, the candy, the face or the point.
+        picked: a click hit a layer: its name, and the index of the frustum, the candy, the face or the point.
         box_edited: a handle of a box was dropped: the layer's name, lower and upper corner (3,) in metres.
         azimuth_changed: the direction from the centre to the eye in degrees, from +x counter-clockwise seen
-            from above; told when the user or `look_from` turns the view.
+            from above; sent when the user or `look_from` turns the view.
     """
 
     picked = Signal(str, int)
@@ -57,7 +64,7 @@ class Scene3D(QWidget):
         self._navigator.box_edited.connect(self.box_edited)
         self._navigator.azimuth_changed.connect(self.azimuth_changed)
         self._buttons = ViewButtons(self)
-        self._buttons.looked.connect(self.look_from)
+        self._buttons.viewpoint_chosen.connect(self.look_from)
         self._buttons.fitted.connect(self.fit)
         self._legend = ScaleLegend(self)
         self._legend.hide()
@@ -135,7 +142,7 @@ class Scene3D(QWidget):
             model: which arm.
             joints_rad: (6,).
             tools: capsules on the flange.
-            is_ghost: whether it is where the arm will be, not where it is.
+            is_ghost: whether it shows where the arm will be, not where it is.
         """
         arm = Arm(model, tools, is_ghost)
         arm.move(joints_rad)
@@ -148,24 +155,24 @@ class Scene3D(QWidget):
         self._canvas.update()
 
     def set_frusta(self, name: str, frusta: Sequence[Frustum]) -> None:
-        """Show the camera's views; a click tells the index."""
+        """Show camera views; `picked` has the index of the one that is clicked."""
         self._put(name, frusta_layer(frusta))
 
     def set_candies(self, name: str, n: int, radius_m: float, kept: BoolArray | None = None) -> None:
-        """Have candies; they are seen as soon as `set_candy_positions` says where.
+        """Add candies; they appear once `set_candy_positions` has placed them.
 
         Args:
             name: of the layer.
             n: how many.
             radius_m: of each.
-            kept: (n,) which ones stayed; lost ones differ in shape and colour. None: all alike.
+            kept: (n,) which ones stayed; lost ones differ in shape and colour. None: all look alike.
         """
         candies = Candies(n, radius_m, kept)
         self._put(name, candies.layer)
         self._candies[name] = candies
 
     def set_candy_positions(self, name: str, positions_m: npt.ArrayLike) -> None:
-        """Put the candies to positions (n, 3), NaN where one is not to be seen; cheap."""
+        """Place the candies at positions (n, 3), NaN to hide one; cheap."""
         self._candies[name].move(positions_m)
         self._canvas.update()
 
@@ -231,13 +238,13 @@ class Scene3D(QWidget):
         self._place_overlays()
 
     def set_empty_text(self, text: str) -> None:
-        """What the middle says while there are no layers."""
+        """Set the text that is shown while there are no layers."""
         self._hint.setText(text)
         self._show_hint()
 
     @property
     def azimuth_deg(self) -> float:
-        """Direction from the centre to the eye, as `azimuth_changed` tells it."""
+        """Direction from the centre to the eye, as in `azimuth_changed`."""
         return self._navigator.camera.azimuth_deg
 
     def look_from(self, direction: str) -> None:
@@ -263,12 +270,11 @@ class Scene3D(QWidget):
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self._canvas.set_theme(theme_of(self))
-            self._legend.update()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Keep the overlays in their corners, and what was fitted in view."""
+        """Move the overlays to their corners, and keep what was fitted in view."""
         super().resizeEvent(event)
-        self._canvas.widget.setGeometry(self.rect())
+        self._canvas.setGeometry(self.rect())
         self._place_overlays()
         self._navigator.refit()
 
@@ -299,3 +305,26 @@ class Scene3D(QWidget):
         self._hint.setGeometry(self.rect().adjusted(4 * GRID_PX, 0, -4 * GRID_PX, 0))
         for overlay in (self._buttons, self._legend, self._hint):
             overlay.raise_()
+
+
+def warm_up(parent: QWidget) -> Iterator[None]:
+    """Draw each kind of thing once unseen: compile the shaders of all views before the first page needs them.
+
+    Step by step, so that between two steps the window can answer.
+    """
+    corners = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    scene = Scene3D(parent)
+    scene.setFixedSize(_WARM_UP_PX, _WARM_UP_PX)
+    scene.grab_image()
+    yield
+    scene.set_points("points", corners)
+    scene.grab_image()
+    yield
+    scene.set_line("line", corners)
+    scene.grab_image()
+    yield
+    scene.set_mesh("mesh", *box_mesh(*corners))
+    scene.set_label("label", corners[0], "0")
+    scene.grab_image()
+    yield
+    scene.deleteLater()

@@ -38,12 +38,12 @@ def box_mesh(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> Shape:
 
 
 def revolved_mesh(profile_m: Sequence[tuple[float, float]], sides: int = _SIDES) -> Shape:
-    """A profile turned about z; it looks sharp where a point of the profile stands twice.
+    """A profile revolved about z; its edge is sharp where a point of the profile is repeated.
 
     Args:
         profile_m: (radius, height) from the top to the bottom of the outside; it is closed where it begins
             and ends on the axis.
-        sides: of the polygon that stands for the circle.
+        sides: of the polygon that approximates the circle.
     """
     outline = np.array(profile_m, dtype=float)
     angle = 2 * np.pi * np.arange(sides) / sides
@@ -112,7 +112,7 @@ def ball() -> Shape:
 
 @lru_cache
 def octahedron() -> Shape:
-    """A unit octahedron; each face has its own vertices, so that it looks nothing like a ball."""
+    """A unit octahedron; each face has its own vertices, so that it looks unlike a ball."""
     corners = np.vstack([np.eye(3), -np.eye(3)])
     faces = np.array([(i, j, k) for i, j, k in product((0, 3), (1, 4), (2, 5))])
     return corners[_outwards(corners, faces)].reshape(-1, 3), np.arange(24).reshape(-1, 3)

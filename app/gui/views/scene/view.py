@@ -14,11 +14,9 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme import Theme
 from app.gui.views.scene.camera import Camera, Size
-from app.gui.views.scene.drawn import DrawnLayer
-from app.gui.views.scene.items import SurfaceProgram
-from app.gui.views.scene.labels import paint_labels
+from app.gui.views.scene.items import DrawnLayer, SmoothBuffer, SurfaceProgram
+from app.gui.views.scene.overlay import paint_labels
 from app.gui.views.scene.parts import Layer
-from app.gui.views.scene.smooth_buffer import SmoothBuffer
 from core.geometry import FloatArray
 
 _STILL_MS = 300
@@ -27,13 +25,12 @@ _SOFTWARE = (b"llvmpipe", b"softpipe", b"swrast", b"SwiftShader")
 
 
 class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
-    """Draws what it is told to, and only when something changed.
+    """Draws the layers it is given, and only when something changed.
 
-    Smooth edges more than double the time a picture takes where the processor draws: there they come when the
-    view has been still for a moment.
+    Where the processor draws, smooth edges more than double the time a picture takes: there they appear once
+    the view has been still for a moment.
 
     Attributes:
-        widget: itself.
         can_draw: always.
         surface_program: the surfaces' shader in this view's context.
     """
@@ -52,7 +49,6 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
         self._stillness = QTimer(self, singleShot=True, interval=_STILL_MS)
         self._stillness.timeout.connect(self._paint_smooth)
         self._is_following = False
-        self.widget = self
         self.setObjectName("gl_view")
         self.set_theme(theme)
 
@@ -101,7 +97,7 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
             super().update()
 
     def initializeGL(self) -> None:
-        """Compile for this context; it may be a second one, after the widget moved to another window."""
+        """Compile for this context; it may be a second one, if the widget was moved to another window."""
         self.surface_program = SurfaceProgram()
         self._smooth = SmoothBuffer()
         self._is_software = any(word in GL.glGetString(GL.GL_RENDERER) for word in _SOFTWARE)
@@ -158,7 +154,7 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
         return self.deviceWidth(), self.deviceHeight()
 
     def _rank(self) -> None:
-        """Let what is see-through be drawn from far to near."""
+        """Draw what is see-through from far to near."""
         eye_m = self._camera.eye_m
         layers = sorted(
             self._drawn.values(),

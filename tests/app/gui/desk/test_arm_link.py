@@ -10,15 +10,18 @@ import time
 
 import pytest
 
-from app.jobs.arm_news import ArmStatus, MoveProgress
+from app.jobs.arm_events import ArmStatus, MoveProgress
 from app.jobs.arm_work import ArmWork
 from app.jobs.messages import Failed
-from app.jobs.session_work import SessionTask, SessionWork
+from app.jobs.session_work import SessionWork
+from app.operations.session import SessionTask
 from core.parameters import apply_settings
 from hardware.cell import read_cell
-from hardware.simulation.ur_controller.addresses import CONTROL_PORT
+from hardware.simulation.ur_controller.identity import CONTROL_PORT
 from tests.app.sessions import copied
-from tests.awake import AwakeClock
+from tests.awake import AwakeClock, within
+
+pytestmark = pytest.mark.system
 
 pytest.importorskip("rtde_control")
 
@@ -29,7 +32,7 @@ AT_ONCE_S = 0.1
 def connected(desk, qtbot):
     """A desk whose arm is connected."""
     do(desk, qtbot, ArmWork.connect, read_cell())
-    qtbot.waitUntil(lambda: desk.arm.has_stop_line and desk.arm.status is not None, timeout=5000)
+    qtbot.waitUntil(lambda: desk.arm.has_stop_line and desk.arm.status is not None)
     return desk
 
 
@@ -38,7 +41,7 @@ def do(desk, qtbot, method, *arguments):
     ended = []
     desk.jobs.failed.connect(lambda _job, failed: ended.append(failed))
     desk.jobs.start("Job", "robot", desk.arm_host, method, *arguments, then=ended.append, patience_s=10)
-    qtbot.waitUntil(lambda: bool(ended), timeout=30_000)
+    qtbot.waitUntil(lambda: bool(ended))
     assert not isinstance(ended[0], Failed), ended[0]
     return ended[0]
 
@@ -51,9 +54,8 @@ def begin_pour(desk, qtbot, session):
         "Pour", "robot", desk.arm_host, ArmWork.pour, planned.number, time.monotonic(), patience_s=10
     )
     with qtbot.waitSignal(
-        desk.jobs.news,
-        timeout=30_000,
-        # Told at its very beginning, the driver may not have been asked yet.
+        desk.jobs.event_received,
+        # At its very beginning, the driver may not have been asked yet.
         check_params_cb=lambda news: (
             isinstance(news, MoveProgress) and news.name == "lay" and news.fraction > 0.1
         ),
@@ -61,8 +63,8 @@ def begin_pour(desk, qtbot, session):
         pass
 
 
-def press_stop(desk, qtbot, timeout=5000):
-    with qtbot.waitSignal(desk.arm.stopped, timeout=timeout) as stopped:
+def press_stop(desk, qtbot):
+    with qtbot.waitSignal(desk.arm.stopped) as stopped:
         desk.arm.stop()
     return stopped.args[0]
 
@@ -88,14 +90,15 @@ def test_stop_is_taken_at_once_while_a_pour_runs_and_the_other_processes_are_bus
 ):
     desk = connected
     begin_pour(desk, qtbot, mug_session)
-    with qtbot.waitSignal(desk.jobs.failed, timeout=10_000) as failed:
+    with qtbot.waitSignal(desk.jobs.failed) as failed:
         done = press_stop(desk, qtbot)
         rest_s = seconds_to_rest(desk)
     print(f"pour under way: taken after {1000 * done.seconds:.1f} ms, at rest after {1000 * rest_s:.0f} ms")
     assert done.sentence == ""
     assert done.seconds < AT_ONCE_S
     assert "stopped" in failed.args[1].sentence.lower()
-    qtbot.waitUntil(lambda: bool(desk.arm.status.problem) and desk.arm.status.must_back_off, timeout=3000)
+    with within(3.0):
+        qtbot.waitUntil(lambda: bool(desk.arm.status.problem) and desk.arm.status.must_back_off)
 
 
 def test_stop_is_taken_at_once_while_the_session_is_imagined(
@@ -125,20 +128,22 @@ def test_stop_is_taken_at_once_while_the_process_that_pours_is_frozen(connected,
         assert json.loads(controller(desk))["is_moving"], "the driver goes on without it"
         done = press_stop(desk, qtbot)
         rest_s = seconds_to_rest(desk)
-        qtbot.waitUntil(lambda: desk.arm.is_silent, timeout=4000)
+        with within(4.0):
+            qtbot.waitUntil(lambda: desk.arm.is_silent)
         assert desk.arm.connected is not None
     finally:
         os.kill(desk.arm_host.pid, signal.SIGCONT)
     print(f"host frozen: taken after {1000 * done.seconds:.1f} ms, at rest after {1000 * rest_s:.0f} ms")
     assert done.seconds < AT_ONCE_S
-    qtbot.waitUntil(lambda: desk.jobs.is_idle and desk.arm.status.must_back_off, timeout=10_000)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle and desk.arm.status.must_back_off)
     assert not desk.arm.is_silent
 
 
 def test_a_killed_process_is_noticed_without_a_job(connected, qtbot):
     desk = connected
     desk.arm_host.kill()
-    qtbot.waitUntil(lambda: desk.arm.connected is None, timeout=3000)
+    with within(3.0):
+        qtbot.waitUntil(lambda: desk.arm.connected is None)
     assert "ended unexpectedly" in desk.arm.farewell
     assert not desk.arm.has_stop_line
     do(desk, qtbot, ArmWork.connect, read_cell())
@@ -146,7 +151,7 @@ def test_a_killed_process_is_noticed_without_a_job(connected, qtbot):
     assert desk.arm.farewell == ""
 
 
-def test_a_stop_that_nobody_can_confirm_is_told_as_such(connected, qtbot):
+def test_a_stop_that_nobody_can_confirm_is_reported_as_such(connected, qtbot):
     desk = connected
     os.kill(desk.arm_host.pid, signal.SIGSTOP)
     try:
@@ -163,7 +168,8 @@ def test_a_line_that_is_cut_does_not_keep_the_process_from_stopping(connected, q
     desk.arm._line.close()
     done = press_stop(desk, qtbot)
     assert done.sentence == ""
-    qtbot.waitUntil(lambda: bool(desk.arm.status.problem), timeout=3000)
+    with within(3.0):
+        qtbot.waitUntil(lambda: bool(desk.arm.status.problem))
 
 
 def test_without_an_arm_there_is_nothing_to_stop(desk, qtbot):
@@ -171,7 +177,7 @@ def test_without_an_arm_there_is_nothing_to_stop(desk, qtbot):
 
 
 def test_states_come_ten_times_a_second(connected, qtbot):
-    told = []
-    connected.jobs.news.connect(told.append)
+    events = []
+    connected.jobs.event_received.connect(events.append)
     qtbot.wait(1000)
-    assert 6 <= sum(isinstance(news, ArmStatus) for news in told) <= 14
+    assert 6 <= sum(isinstance(event, ArmStatus) for event in events) <= 14

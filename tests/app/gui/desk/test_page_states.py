@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import json
 
-from app.gui.desk.page_states import PageState, page_states
-from app.gui.frame.next_step import next_step
+from app.gui.desk.page_states import PageState, page_states, with_failure
+from app.gui.shell.job_bar import next_step
 from core.session.pour_runs import Outcome, write_outcome
 
 
 def _next(workspace, shown="scan"):
-    step = next_step(page_states(workspace, None, None), workspace.is_container, shown)
+    step = next_step(page_states(workspace, None), workspace.is_container, shown)
     return None if step is None else step.page
 
 
 def test_without_a_session_everything_is_empty(desk):
-    assert {state.word for state in page_states(desk.workspace, None, None).values()} == {"empty"}
+    assert {state.word for state in page_states(desk.workspace, None).values()} == {"empty"}
 
 
-def test_figures_tell_what_was_found(desk, mug_session):
+def test_figures_show_what_was_found(desk, mug_session):
     desk.workspace.open(mug_session)
-    states = page_states(desk.workspace, None, None)
+    states = page_states(desk.workspace, None)
     assert states["scan"].figure == "24 views"
     assert states["imagination"].figure == "container"
     assert states["pours"].figure.endswith("%")
@@ -28,7 +28,7 @@ def test_figures_tell_what_was_found(desk, mug_session):
 
 def test_running_and_failed_pages_are_marked(desk, mug_session):
     desk.workspace.open(mug_session)
-    states = page_states(desk.workspace, "imagination", "reconstruction")
+    states = with_failure(page_states(desk.workspace, "imagination"), "reconstruction")
     assert states["imagination"].word == "running"
     assert states["reconstruction"].word == "failed"
 
@@ -40,13 +40,18 @@ def test_a_pour_belongs_to_the_imagination_it_was_made_for(desk, mug_session):
     run.mkdir(parents=True)
     events = [{"kind": "confirmed", "time": "2026-01-01T00:00:00", "imagination": digest}, {"kind": "done"}]
     (run / "events.jsonl").write_text("\n".join(map(json.dumps, events)))
-    assert page_states(desk.workspace, None, None)["robot"] == PageState("fresh", "poured")
+    assert _read_anew(desk)["robot"] == PageState("fresh", "poured")
     write_outcome(run, Outcome(60, 2, "", is_simulated=False, facts={}))
-    assert page_states(desk.workspace, None, None)["robot"] == PageState("fresh", "2 spilled")
+    assert _read_anew(desk)["robot"] == PageState("fresh", "2 spilled")
     (run / "events.jsonl").write_text(
         "\n".join(map(json.dumps, [events[0] | {"imagination": "old"}, events[1]]))
     )
-    assert page_states(desk.workspace, None, None)["robot"].word == "stale"
+    assert _read_anew(desk)["robot"].word == "stale"
+
+
+def _read_anew(desk):
+    desk.workspace.refresh()
+    return page_states(desk.workspace, None)
 
 
 def test_the_next_step_leads_through_the_work(desk, mug_session, tmp_path):
@@ -61,4 +66,4 @@ def test_nothing_is_poured_into_what_is_no_container(desk, block_session):
     desk.workspace.open(block_session)
     assert desk.workspace.is_container is False
     assert _next(desk.workspace) is None
-    assert page_states(desk.workspace, None, None)["imagination"].figure == "no container"
+    assert page_states(desk.workspace, None)["imagination"].figure == "no container"

@@ -7,14 +7,14 @@ import pytest
 from app.gui.desk.page_states import page_states
 from core.errors import SessionError
 from core.parameters import apply_settings
-from core.pipeline.needs import Freshness
+from core.pipeline.freshness import Freshness
 
 
 def _words(workspace):
-    return {key: state.word for key, state in page_states(workspace, None, None).items()}
+    return {key: state.word for key, state in page_states(workspace, None).items()}
 
 
-def test_a_session_brings_its_parameters_and_stands_fresh(desk, mug_session):
+def test_a_session_brings_its_parameters_and_is_fresh(desk, mug_session):
     desk.workspace.open(mug_session)
     assert desk.workspace.parameters.containability.n_max == 150
     assert _words(desk.workspace) == {

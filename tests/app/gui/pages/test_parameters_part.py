@@ -35,7 +35,7 @@ def test_a_preset_is_chosen_and_can_be_undone(part, desk):
 
 
 def test_a_preset_that_is_none_is_told_of_and_changes_nothing(part, desk, qtbot):
-    with qtbot.waitSignal(desk.told) as told:
+    with qtbot.waitSignal(desk.message) as told:
         part.choose_preset("papre")
     assert "did you mean 'paper'" in told.args[0]
     assert desk.workspace.preset_name == "default"
@@ -52,7 +52,7 @@ def test_a_saved_preset_is_the_one_that_is_compared_with_from_now_on(part, desk,
 
 
 def test_a_preset_that_cannot_be_saved_is_told_of(part, desk, qtbot, tmp_path):
-    with qtbot.waitSignal(desk.told) as told:
+    with qtbot.waitSignal(desk.message) as told:
         part.save_as(tmp_path / "nowhere" / "mine.json")
     assert "cannot be written" in told.args[0]
     assert desk.workspace.preset_name == "default"
@@ -63,7 +63,7 @@ def test_the_header_tells_how_much_differs_and_opens_the_editor(qtbot, desk):
     qtbot.addWidget(folded)
     folded.show()
     header = folded.findChild(QToolButton, "parameters_header")
-    assert header.text() == "Parameters — as the preset"
+    assert header.text() == "Parameters — as in the preset"
     assert not folded.part.isVisible()
     for name, value in (("reconstruction.voxel_m", 0.003), ("collision.max_faces", 3000)):
         folded.part.editor.set_value(name, value)

@@ -42,8 +42,8 @@ def test_settings_that_a_record_holds_without_their_group_are_found(workspace):
     change(workspace, collision__aabb_margin_m=0.001, reconstruction__max_depth_m=5.0, seed=4)
     assert changed_since(workspace, STAGES) == [
         "reconstruction.max_depth_m",
-        "collision.aabb_margin_m",
         "seed",
+        "collision.aabb_margin_m",
     ]
 
 

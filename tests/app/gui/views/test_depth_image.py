@@ -47,7 +47,7 @@ def test_a_flat_wall_has_a_range_too():
     assert high > low
 
 
-def test_the_mouse_is_told_the_depth_under_it(panel):
+def test_the_tooltip_shows_the_depth_under_the_mouse(panel):
     panel.set_depth(ramp())
     place = panel._place(640, 480)  # where the image lies is no part of the interface
     at = QPointF(place.left() + 0.75 * place.width(), place.center().y())
@@ -57,14 +57,11 @@ def test_the_mouse_is_told_the_depth_under_it(panel):
     assert panel.depth_at(QPointF(379, 5)) is None
 
 
-def test_a_fixed_range_stays_and_an_image_without_depth_keeps_the_last(panel):
+def test_an_image_without_depth_keeps_the_last_range(panel):
     panel.set_depth(ramp())
     seen = panel.range_m
     panel.set_depth(np.zeros((480, 640), np.float32))
     assert panel.range_m == seen
-    panel.set_range((0.3, 0.9))
-    panel.set_depth(ramp())
-    assert panel.range_m == (0.3, 0.9)
 
 
 def test_thinning_keeps_proportions_and_never_goes_below_the_widget():

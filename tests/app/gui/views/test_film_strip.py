@@ -5,8 +5,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QImage
 from PySide6.QtWidgets import QLabel, QListView, QPushButton
 
-from app.gui.views.film_strip import FilmStrip, Picture
-from app.gui.views.picture_dialog import PictureDialog
+from app.gui.views.film_strip import FilmStrip, Picture, PictureDialog
 
 LEFT = Qt.MouseButton.LeftButton
 CAPTIONS = [f"pour {k}" for k in range(6)]
@@ -54,10 +53,10 @@ def test_it_fills_as_pictures_arrive_in_the_expected_order(qtbot, strip, picture
     assert [picture.path for picture in strip.pictures] == [None] * 6
     strip.set_pictures([pictures[3], pictures[1]], CAPTIONS)
     assert [picture.caption for picture in strip.pictures] == CAPTIONS
-    qtbot.waitUntil(lambda: color_at(strip, 3) == (120, 100, 50), timeout=2000)
-    qtbot.waitUntil(lambda: color_at(strip, 1) == (40, 100, 50), timeout=2000)
+    qtbot.waitUntil(lambda: color_at(strip, 3) == (120, 100, 50))
+    qtbot.waitUntil(lambda: color_at(strip, 1) == (40, 100, 50))
     strip.set_pictures(pictures, CAPTIONS)
-    qtbot.waitUntil(lambda: color_at(strip, 2) == (80, 100, 50), timeout=2000)
+    qtbot.waitUntil(lambda: color_at(strip, 2) == (80, 100, 50))
 
 
 def test_unexpected_pictures_come_last(strip, pictures):
@@ -108,9 +107,9 @@ def test_the_large_picture_is_shown_and_a_broken_one_is_named(qtbot, pictures, t
         image = dialog.grab().toImage()
         return image.pixelColor(image.width() // 3, image.height() // 3).getRgb()[:3]
 
-    qtbot.waitUntil(lambda: middle() == (160, 100, 50), timeout=2000)
+    qtbot.waitUntil(lambda: middle() == (160, 100, 50))
     dialog.show_picture(1)
-    qtbot.waitUntil(lambda: middle() != (160, 100, 50), timeout=2000)
+    qtbot.waitUntil(lambda: middle() != (160, 100, 50))
 
 
 def test_filling_it_does_not_scroll_it_back(qtbot, strip, pictures):

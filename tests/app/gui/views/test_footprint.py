@@ -1,11 +1,14 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtGui import QImage
 
 from app.gui.theme import theme_of
 from app.gui.views.footprint import FootprintView
+from core.report.plot_geometry import FootprintPlan
 
 
 @pytest.fixture
@@ -25,9 +28,13 @@ def places_of(view, name):
     return np.argwhere(np.abs(pixels - wanted).sum(axis=2) < 120)[:, ::-1].astype(float)
 
 
-def show(view, drops, retained, center=(0.2, -0.4, 0.1)):
-    outline = np.array([[0.15, -0.45], [0.25, -0.35]])
-    view.set_footprint(np.array(drops), np.array(retained), outline, center, 0.0)
+def show(view, drops, retained, center=(0.2, -0.4)):
+    outline = np.array([[0.15, -0.45], [0.25, -0.45], [0.25, -0.35], [0.15, -0.35]])
+    plan = FootprintPlan(np.array(drops), np.array(retained), outline)
+    if center is not None:
+        axes = np.array([[[0.17, -0.4], [0.23, -0.4]], [[0.2, -0.42], [0.2, -0.38]]])
+        plan = replace(plan, center_m=np.array(center), axes_m=axes)
+    view.set_footprint(plan)
 
 
 def test_x_goes_right_and_y_goes_up(view):
@@ -46,7 +53,7 @@ def test_both_axes_have_the_same_scale(view):
 
 
 def test_numbers_are_told_also_without_seeing(view):
-    show(view, [[0.2, -0.4, 0.3], [0.21, -0.4, 0.3], [0.22, -0.4, 0.3]], [True, False, True])
+    show(view, [[0.2, -0.4], [0.21, -0.4], [0.22, -0.4]], [True, False, True])
     assert view.accessibleDescription() == "2 of 3 candies stayed"
     view.clear()
     assert view.accessibleDescription() == ""
@@ -66,7 +73,8 @@ def test_kept_and_lost_have_different_shapes(view):
 
 def test_nothing_dropped_and_nothing_kept_can_be_drawn(view):
     assert not view.grab().isNull()
-    view.set_footprint(np.zeros((0, 2)), np.zeros(0, bool), np.array([[0, 0], [0.1, 0.1]]), None, 0.0)
+    nothing = FootprintPlan(np.zeros((0, 2)), np.zeros(0, bool), np.zeros((0, 2)))
+    view.set_footprint(replace(nothing, outline_m=np.array([[0, 0], [0.1, 0], [0.1, 0.1], [0, 0.1]])))
     assert not view.grab().isNull()
-    view.set_footprint(np.zeros((0, 2)), np.zeros(0, bool), np.zeros((0, 2)), None, 0.0, radii_m=(0.01,))
+    view.set_footprint(replace(nothing, pivot_radii_m=(0.01,)))
     assert not view.grab().isNull()

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 
-from app.gui.views.pour_map import PourCell, PourMap
+from app.gui.views.pour_map import MappedPour, PourMap
 
 
 def cells(n_directions=8):
     return [
-        PourCell(i, j, i * pi / 4, 0.01 + 0.02 * j, p=(i + j) / 10, spread=0.03, is_feasible=(i != 3))
+        MappedPour(i, j, i * pi / 4, 0.01 + 0.02 * j, p=(i + j) / 10, spread=0.03, is_feasible=(i != 3))
         for i in range(n_directions)
         for j in range(3)
     ]
@@ -83,7 +83,7 @@ def test_the_tooltip_tells_all_facts(pour_map):
     for word in ("135°", "50.0 mm", "50 ± 3 %", "cannot"):
         assert word in said
     assert "chosen" in pour_map.describe(2, 1)
-    assert "the arm can do it" in pour_map.describe(2, 1)
+    assert "the arm can make it" in pour_map.describe(2, 1)
 
 
 def test_a_comparison_says_by_how_much(pour_map):
@@ -101,7 +101,7 @@ def test_a_comparison_of_another_shape_is_refused_and_one_outlived_is_dropped(po
 
 
 def test_a_single_direction_lies_where_it_points(qtbot, pour_map):
-    pour_map.set_pours([PourCell(0, j, pi / 2, 0.01 * j, 0.5) for j in range(3)], chosen=None)
+    pour_map.set_pours([MappedPour(0, j, pi / 2, 0.01 * j, 0.5) for j in range(3)], chosen=None)
     assert pour_map.selection is None
     assert place(pour_map, 0, 2).y() < 100
     with qtbot.assertNotEmitted(pour_map.selected):
@@ -111,7 +111,7 @@ def test_a_single_direction_lies_where_it_points(qtbot, pour_map):
 
 def test_the_number_is_readable_at_360_px(pour_map):
     """Text and background of the darkest and the lightest cell stand well apart."""
-    pour_map.set_pours([PourCell(0, j, 0.0, 0.01 * j, p) for j, p in enumerate((0.0, 0.5, 1.0))], None)
+    pour_map.set_pours([MappedPour(0, j, 0.0, 0.01 * j, p) for j, p in enumerate((0.0, 0.5, 1.0))], None)
     image = pour_map.grab().toImage()
     for j in range(3):
         at = place(pour_map, 0, j)

@@ -33,7 +33,7 @@ def test_the_shape_is_the_same_in_both_themes(qtbot):
         assert (silhouette(state, LIGHT) == silhouette(state, DARK)).all()
 
 
-def test_the_word_is_told_with_the_mark(qtbot):
+def test_the_word_comes_with_the_mark(qtbot):
     mark = StateMark()
     qtbot.addWidget(mark)
     mark.set_state("stale")

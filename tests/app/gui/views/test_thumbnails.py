@@ -68,15 +68,15 @@ def test_pictures_arrive_from_files_and_from_memory(qtbot, grid, tmp_path):
     memory.fill(QColor("#102030"))
     path = picture(tmp_path, "one.png", "#c86432")
     grid.set_items([Thumbnail("a", "1", "taken", path), Thumbnail("b", "2", "taken", memory)])
-    qtbot.waitUntil(lambda: color_at(grid, 0) == (0xC8, 0x64, 0x32), timeout=2000)
-    qtbot.waitUntil(lambda: color_at(grid, 1) == (0x10, 0x20, 0x30), timeout=2000)
+    qtbot.waitUntil(lambda: color_at(grid, 0) == (0xC8, 0x64, 0x32))
+    qtbot.waitUntil(lambda: color_at(grid, 1) == (0x10, 0x20, 0x30))
 
 
 def test_a_retaken_view_shows_its_new_picture(qtbot, grid, tmp_path):
     grid.set_items([Thumbnail("a", "1", "poor", picture(tmp_path, "one.png", "#c86432"))])
-    qtbot.waitUntil(lambda: color_at(grid, 0) == (0xC8, 0x64, 0x32), timeout=2000)
+    qtbot.waitUntil(lambda: color_at(grid, 0) == (0xC8, 0x64, 0x32))
     grid.set_item(0, Thumbnail("a", "1", "taken", picture(tmp_path, "one.png", "#203040")))
-    qtbot.waitUntil(lambda: color_at(grid, 0) == (0x20, 0x30, 0x40), timeout=2000)
+    qtbot.waitUntil(lambda: color_at(grid, 0) == (0x20, 0x30, 0x40))
 
 
 def test_a_file_that_cannot_be_read_leaves_an_empty_box(qtbot, grid, tmp_path):
@@ -106,7 +106,7 @@ def test_selecting_from_outside_sends_nothing_and_survives_new_items(qtbot, grid
     assert grid.selection is None
 
 
-def test_the_state_is_told_in_a_word(grid):
+def test_the_state_is_shown_in_a_word(grid):
     grid.set_items(items(1))
     model = view_of(grid).model()
     role = Qt.ItemDataRole.AccessibleTextRole

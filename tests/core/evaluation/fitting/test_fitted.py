@@ -13,7 +13,6 @@ from core.evaluation.fitting.fitted import (
     settings_of,
     start_values,
     threshold_name,
-    with_values,
 )
 from core.parameters import Parameters, apply_settings, flatten
 
@@ -22,7 +21,7 @@ from core.parameters import Parameters, apply_settings, flatten
 def test_the_usual_ranges_are_possible(names):
     for one in fitted_parameters((), names):
         for bound in (one.low, one.high):
-            assert with_values(Parameters(), (one,), {one.name: bound}), one.name
+            assert parameters_of_trial(Parameters(), (one,), 1, {one.name: bound}), one.name
 
 
 def test_spinning_follows_rolling_unless_it_is_named():
@@ -49,8 +48,10 @@ def test_a_range_is_taken_and_kept_to():
 def test_values_come_from_and_go_to_parameters():
     fitted = fitted_parameters(["containability.rotation_rad", ROLLING])
     start = start_values(fitted, Parameters())
-    assert with_values(Parameters(), fitted[:1], start) == Parameters()
-    changed = with_values(Parameters(), fitted, {"containability.rotation_rad": 0.1, ROLLING: 0.25})
+    assert parameters_of_trial(Parameters(), fitted[:1], 1, start) == Parameters()
+    changed = parameters_of_trial(
+        Parameters(), fitted, 1, {"containability.rotation_rad": 0.1, ROLLING: 0.25}
+    )
     assert flatten(changed)[SPINNING] == 0.25
 
 
@@ -71,7 +72,7 @@ def test_the_verdict_says_which_threshold_is_chosen(verdict, name):
         ("containability.omega_threshold", "always chosen"),
         ("containability.capacity_threshold", "always chosen"),
         ("containability.verdict", "no real number"),
-        ("reconstruction.voxel_m", "cannot be fitted: labels can tell"),
+        ("reconstruction.voxel_m", "cannot be fitted: labels depend on"),
         ("particle.shape", "no real number"),
         ("containability.n_max", "no real number"),
         ("containability.rotation_rad=0.1", "write NAME=LOW:HIGH"),

@@ -1,9 +1,8 @@
-"""The threshold's rule, the margin, and what is told for each seed."""
+"""The threshold's rule, the margin, and what is reported for each seed."""
 
 import pytest
 
-from core.evaluation.fitting.scores import CaseScore, FitScore
-from core.evaluation.fitting.threshold import best_threshold, n_right
+from core.evaluation.fitting.scores import CaseScore, FitScore, best_threshold, n_right
 
 
 def score(containers, others, seed=0):

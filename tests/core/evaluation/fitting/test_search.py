@@ -77,9 +77,9 @@ def test_the_number_of_workers_changes_nothing():
 
 
 def test_another_seed_makes_other_trials():
-    ways = [[step.trial.values for step in run(request(3, seed))[1]] for seed in (0, 1)]
-    assert ways[0][0] == ways[1][0]
-    assert ways[0][1] != ways[1][1]
+    searches = [[step.trial.values for step in run(request(3, seed))[1]] for seed in (0, 1)]
+    assert searches[0][0] == searches[1][0]
+    assert searches[0][1] != searches[1][1]
 
 
 def test_importance_comes_with_enough_trials_and_names_what_matters():

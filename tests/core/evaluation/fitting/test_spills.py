@@ -8,11 +8,12 @@ from core.evaluation.fitting.containability import FitRequest
 from core.evaluation.fitting.fitted import fitted_parameters
 from core.evaluation.fitting.pours import PourTarget, fit_pours
 from core.evaluation.fitting.spills import SpillMeasurement, read_spills, write_spills
-from core.imagination.imagine import imagine_containability
+from core.imagination.drop import imagine_drop
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
 from core.workers import RunHere
 from hardware.simulation.objects import builtin_object
+from tests.core.imagination.here import here
 
 FRICTION = "pouring.contact.lateral_friction"
 QUICK = {
@@ -78,7 +79,7 @@ def test_a_missing_file_is_a_sentence(tmp_path):
 def target():
     mesh = builtin_object("bowl")
     model = CollisionModel("exact", (mesh,), mesh)
-    return PourTarget(model, imagine_containability(model, quick()).footprint)
+    return PourTarget(model, imagine_drop(here(quick()), model).footprint)
 
 
 def quick(**settings):

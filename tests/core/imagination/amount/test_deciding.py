@@ -1,8 +1,8 @@
 import pytest
 
 from core.errors import StageError
-from core.imagination.amount.deciding import decide_amount, is_number_in_one_cup
-from core.imagination.amount.reason import cup_limit
+from core.imagination.amount.reasoning import cup_limit, is_number_in_one_cup, plan_amount
+from core.imagination.amount.result import PlannedAmount
 from core.parameters import Parameters, apply_settings
 from tests.core.imagination.amount.conftest import cylinder
 
@@ -13,29 +13,35 @@ def asking(**pouring):
 
 def test_the_cup_gets_what_was_reasoned():
     capacity = cylinder(100)
-    amount, parameters = decide_amount(capacity, asking(amount="half"))
-    assert (amount.n_total, parameters.pouring.n_pour) == (50, 50)
-    amount, parameters = decide_amount(capacity, asking(n_pour=60))
-    assert (amount.n_total, parameters.pouring.n_pour) == (60, 60)
+    half = plan_amount(capacity, asking(amount="half"))
+    assert (half.amount.n_total, half.n_pour, half.n_per_cup) == (50, 50, (50,))
+    number = plan_amount(capacity, asking(n_pour=60))
+    assert (number.amount.n_total, number.n_pour) == (60, 60)
 
 
 def test_what_one_cup_does_not_hold_is_poured_with_several():
     parameters = asking(n_pour=2 * cup_limit(Parameters()) - 1)
     assert not is_number_in_one_cup(parameters)
-    amount, decided = decide_amount(cylinder(1000), parameters)
-    assert amount.n_cups == 2
-    assert decided.pouring.n_pour == cup_limit(Parameters())
+    planned = plan_amount(cylinder(1000), parameters)
+    assert len(planned.n_per_cup) == planned.amount.n_cups == 2
+    assert planned.n_pour == cup_limit(Parameters())
 
 
 def test_what_is_refused_may_be_looked_at():
     parameters = asking(n_pour=500)
-    amount, decided = decide_amount(cylinder(100), parameters)
-    assert "500" in amount.refusal
-    assert decided.pouring.n_pour == cup_limit(Parameters())
+    planned = plan_amount(cylinder(100), parameters)
+    assert "500" in planned.amount.refusal
+    assert planned.n_pour == cup_limit(Parameters())
 
 
 def test_an_amount_by_capacity_needs_one():
     parameters = apply_settings(asking(amount="safe"), {"containability.verdict": "omega"})
     with pytest.raises(StageError, match=r"containability\.verdict"):
-        decide_amount(None, parameters)
-    assert decide_amount(None, asking()) == (None, asking())
+        plan_amount(None, parameters)
+    assert plan_amount(None, asking()) == PlannedAmount(60, None)
+
+
+def test_an_amount_survives_the_disk(tmp_path):
+    for planned in (plan_amount(cylinder(100), asking(amount="half")), PlannedAmount(60, None)):
+        planned.save(tmp_path)
+        assert PlannedAmount.load(tmp_path) == planned

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from core.errors import StageError
-from core.imagination.amount.reason import MOST_CUPS, cup_limit, reason_amount
-from core.imagination.amount.request import HALF, SAFE, AmountRequest
+from core.imagination.amount.reasoning import MOST_CUPS, cup_limit, reason_amount
+from core.imagination.amount.result import HALF, SAFE, AmountRequest
 from core.imagination.packing import cup_holds
 from core.parameters import apply_settings
 from tests.core.imagination.amount.conftest import capacity_of, cone, cylinder

@@ -1,7 +1,7 @@
 import pytest
 
 from core.errors import InputError
-from core.imagination.amount.request import HALF, MOST_ASKED, SAFE, AmountRequest, parse_amount
+from core.imagination.amount.result import HALF, MOST_ASKED, SAFE, AmountRequest, parse_amount
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,8 @@ from dataclasses import replace
 import pytest
 
 from core.errors import SessionError
-from core.imagination.amount.reason import reason_amount
-from core.imagination.amount.request import SAFE
-from core.imagination.amount.result import Amount
-from core.imagination.amount.words import amount_sentence
+from core.imagination.amount.reasoning import reason_amount
+from core.imagination.amount.result import SAFE, Amount, amount_sentence
 from tests.core.imagination.amount.conftest import cylinder
 
 SIXTY = Amount("60", 192, 150, 60, (60,), 0.4, 0.04, 60 / 192, "", "")

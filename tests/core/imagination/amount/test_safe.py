@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.imagination.amount.safe import LIFTED, REPOSE, safe_candies, sure_candies
+from core.imagination.amount.reasoning import LIFTED, REPOSE, safe_candies, sure_candies
 from core.parameters import apply_settings
 from tests.core.imagination.amount.conftest import capacity_of, cone, cylinder
 

@@ -4,7 +4,7 @@ import pytest
 from core.mesh import TriangleMesh
 from core.mesh_topology import join
 from core.parameters import Parameters, apply_settings
-from core.parameters.capacity import CapacityParameters
+from core.parameters.imagination import CapacityParameters
 from tests.core.imagination.conftest import box
 
 

@@ -1,7 +1,7 @@
 from dataclasses import replace
 from math import nan
 
-from core.imagination.capacity.explain import Facts, explain
+from core.imagination.capacity.imagine import Facts, explain
 
 AGREEING = Facts(
     imagined_ml=300,

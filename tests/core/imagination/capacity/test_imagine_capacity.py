@@ -1,25 +1,21 @@
 """Fillings of a dish of 90 x 50 x 35 mm inside, 157 ml."""
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
 
 from core.collision import CollisionModel
-from core.imagination.body import body_files
 from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import Capacity
-from core.imagination.containability import object_at_rest
-from core.imagination.imagine import imagine_containability
-from core.progress import Reporter
+from core.imagination.drop import imagine_drop
 from core.workers import RunHere
+from tests.core.imagination.here import here
 
 
 def fill(model, candies, few, runner) -> Capacity:
-    found = imagine_containability(model, candies)
-    with body_files(object=(model.parts, not model.is_convex)) as files:
-        target = object_at_rest(model, files["object"], candies)
-        return imagine_capacity(model.surface, target, found, candies, few, runner, Reporter())
+    context = replace(here(candies.model_copy(update={"capacity": few})), runner=runner)
+    return imagine_capacity(context, model, imagine_drop(here(candies), model))
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +49,7 @@ def test_levels(filled):
     assert filled.share_of(half) == pytest.approx(0.5, abs=0.03)
 
 
+@pytest.mark.system
 def test_the_same_in_one_process_and_in_two(filled, exact_dish, candies, few, pool):
     again = fill(exact_dish, candies, few, pool)
     for field in fields(Capacity):

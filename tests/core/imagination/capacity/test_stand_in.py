@@ -2,9 +2,16 @@ from math import pi
 
 import pytest
 
-from core.imagination.capacity.packing import NOWHERE, Surroundings, bulk_ml, packing_fraction
-from core.imagination.capacity.rain import runs_over
-from core.imagination.capacity.stand_in import ball_of, candy_itself, particle_volume_m3
+from core.imagination.capacity.filling import overflows
+from core.imagination.capacity.stand_in import (
+    NOWHERE,
+    Surroundings,
+    ball_of,
+    bulk_ml,
+    candy_itself,
+    packing_fraction,
+    particle_volume_m3,
+)
 
 
 def test_a_ball_has_the_volume_and_mass_of_the_candies_it_stands_for(candies):
@@ -29,9 +36,9 @@ def test_candies_stand_for_themselves(candies):
     assert candy_itself(candies).particle == candies.particle
 
 
-def test_it_runs_over_when_the_last_candies_do_not_add_up():
-    assert not runs_over([(10, 10)], 8)
-    assert not runs_over([(10, 10), (20, 15)], 8)
-    assert runs_over([(10, 10), (20, 13)], 8)
+def test_it_overflows_when_the_last_candies_do_not_add_up():
+    assert not overflows([(10, 10)], 8)
+    assert not overflows([(10, 10), (20, 15)], 8)
+    assert overflows([(10, 10), (20, 13)], 8)
     # Too few since then to tell.
-    assert not runs_over([(10, 10), (14, 10)], 8)
+    assert not overflows([(10, 10), (14, 10)], 8)

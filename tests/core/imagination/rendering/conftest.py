@@ -62,7 +62,7 @@ def story() -> Story:
     retained = np.arange(N_CANDIES) >= LOST
     starts = drop.positions_m[0].astype(float)
     footprint = Footprint.of(starts[retained, :2], float(aabb[1, 2]) + 0.01)
-    containability = Containability(0.0, starts, retained, aabb, footprint, drop)
+    containability = Containability(starts, retained, aabb, footprint, drop, omega_threshold=0.0)
 
     middle = (aabb[0] + aabb[1]) / 2
     T_world_cup = make_pose(rotation_x(0.3) @ rotation_y(2.0), middle + np.array([0.1, 0, 0.12]))

@@ -13,11 +13,10 @@ from PIL import Image
 
 from core.errors import Cancelled, SessionError, StageError
 from core.imagination.rendering.doctor import renderer_name
+from core.imagination.rendering.drop_view import still_moments
 from core.imagination.rendering.evidence import Evidence
-from core.imagination.rendering.films import film_moments
-from core.imagination.rendering.movie import encode
+from core.imagination.rendering.films import encode, film_moments
 from core.imagination.rendering.render import render_evidence
-from core.imagination.rendering.stills import still_moments
 from core.parameters import apply_settings
 from core.progress import Reporter
 from core.workers import WorkerPool

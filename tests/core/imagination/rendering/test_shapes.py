@@ -3,9 +3,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from core.errors import StageError
 from core.imagination.rendering.shapes import candy_mesh, cup_surface, write_obj
 from core.mesh import TriangleMesh
-from core.parameters.imagination import CupParameters, ParticleParameters
+from core.parameters.bodies import CupParameters, ParticleParameters
 
 
 def read_obj(path):
@@ -61,3 +62,9 @@ def test_the_cup_is_closed_and_has_its_size():
     np.testing.assert_allclose(mesh.aabb_max_m, [cup.mouth_radius_m, cup.mouth_radius_m, cup.length_m])
     solid_m3 = np.pi * cup.mouth_radius_m**2 * cup.length_m
     assert 0.05 * solid_m3 < mesh.volume_m3 < 0.2 * solid_m3  # hollow
+
+
+def test_an_unknown_shape_is_an_error_and_no_other_shape():
+    particle = ParticleParameters().model_copy(update={"shape": "cube"})
+    with pytest.raises(StageError, match="particle shape 'cube'"):
+        candy_mesh(particle)

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from core.imagination.pouring import indentations_m, pivots_m, pour_directions_rad
+from core.imagination.pours import indentations_m, pivots_m, pour_directions_rad
 from core.imagination.results import Footprint
 from core.motion.pour.cell import PourCell
 from core.motion.pour.checking import check_plan
-from core.motion.pour.plan import PlannedMove, PourPlan
+from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
 from core.motion.pour.planning import plan_pour
 from core.motion.trajectory import SAMPLE_S, JointTrajectory
 from core.parameters.imagination import PouringParameters
@@ -49,31 +49,31 @@ def pours_onto(box: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return thetas, pivots_m(footprint, thetas, indentations_m(box, POURING))
 
 
+def target_of(box: np.ndarray, i: int, j: int) -> PourTarget:
+    thetas, pivots = pours_onto(box)
+    return PourTarget(box, i, j, float(thetas[i]), pivots[i, j], POURING)
+
+
 @dataclass(frozen=True)
 class Planned:
     """A plan with everything that it was made for."""
 
     cell: PourCell
-    box_m: np.ndarray
-    theta_rad: float
-    pivot_m: np.ndarray
+    target: PourTarget
     plan: PourPlan
 
-    def check(self, plan: PourPlan | None = None, **changes: Any) -> None:
-        there = replace(self, **changes)
-        check_plan(there.cell, there.box_m, POURING, plan or self.plan, there.pivot_m, there.theta_rad)
+    def check(self, plan: PourPlan | None = None, cell: PourCell | None = None, **changes: Any) -> None:
+        """Check a plan, or this one, for this cell and target or changed ones."""
+        check_plan(cell or self.cell, replace(self.target, **changes), plan or self.plan)
 
     def move(self, name: str) -> PlannedMove:
         return next(move for move in self.plan.moves if move.name == name)
 
 
 def planned(name: str, i: int, j: int, cell: PourCell | None = None, start: Any = None) -> Planned:
-    cell, box = cell or shipped_cell(), box_m(name)
-    thetas, pivots = pours_onto(box)
-    theta, pivot = float(thetas[i]), pivots[i, j]
+    cell, target = cell or shipped_cell(), target_of(box_m(name), i, j)
     start_rad = cell.home_rad if start is None else np.asarray(start)
-    plan = plan_pour(cell, box, i, j, theta, pivot, POURING, start_rad)
-    return Planned(cell, box, theta, pivot, plan)
+    return Planned(cell, target, plan_pour(cell, target, start_rad))
 
 
 def with_move(plan: PourPlan, name: str, joints_rad: np.ndarray) -> PourPlan:

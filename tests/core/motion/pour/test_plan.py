@@ -10,7 +10,7 @@ from core.geometry import transform_points
 from core.imagination.cup import cup_pose, pivot_in_cup_m, pour_angle
 from core.motion.joint_path import STEP_RAD
 from core.motion.kinematics import flange_pose, singularity_measure, within_limits
-from core.motion.pour.plan import MOVES, MovePhase, PourPlan
+from core.motion.pour.plan import MOVES, MovePhase, PourPlan, Segment
 from core.motion.trajectory import SAMPLE_S
 from tests.core.motion.pour.stage import POURING, Planned, planned, shipped_cell
 
@@ -81,11 +81,11 @@ def test_full_cup_is_carried_level(pour: Planned, name: str):
     assert tilt_rad(held(pour, name)).max() <= pour.cell.limits.max_tilt_rad
 
 
-def test_cup_leans_more_and_more_until_it_lies_ready(pour: Planned):
+def test_cup_tilts_more_and_more_until_it_is_ready(pour: Planned):
     tilt = tilt_rad(held(pour, "lay"))
     assert (np.diff(tilt) > -1e-6).all()
     assert tilt[-1] == pytest.approx(np.pi / 2 - CUP.slant_rad, abs=1e-6)
-    ready = cup_pose(CUP, pour.pivot_m, pour.theta_rad, 0.0)
+    ready = cup_pose(CUP, pour.target.pivot_m, pour.target.theta_rad, 0.0)
     lower = held(pour, "lower")
     assert lower[-1] == pytest.approx(ready, abs=1e-6)
     assert lower[:, :3, :3] == pytest.approx(np.tile(ready[:3, :3], (len(lower), 1, 1)), abs=1e-6)
@@ -96,13 +96,13 @@ def test_cup_leans_more_and_more_until_it_lies_ready(pour: Planned):
 def test_pivot_stays(pour: Planned, name: str):
     cups = held(pour, name)
     pivots = cups[:, :3, :3] @ pivot_in_cup_m(CUP) + cups[:, :3, 3]
-    error = np.linalg.norm(pivots - pour.pivot_m, axis=1).max()
+    error = np.linalg.norm(pivots - pour.target.pivot_m, axis=1).max()
     assert error <= 0.0005
     assert error <= pour.plan.pivot_error_m + 1e-12
 
 
-def test_turn_is_the_imagined_one_and_never_faster(pour: Planned):
-    ready = cup_pose(CUP, pour.pivot_m, pour.theta_rad, 0.0)
+def test_pour_rotation_is_the_imagined_one_and_never_faster(pour: Planned):
+    ready = cup_pose(CUP, pour.target.pivot_m, pour.target.theta_rad, 0.0)
     tilt = tilt_rad(held(pour, "pour"))
     gamma = tilt - tilt_rad(ready[None])[0]
     times = pour.move("pour").trajectory.times_s
@@ -116,12 +116,12 @@ def test_turn_is_the_imagined_one_and_never_faster(pour: Planned):
     assert (rate <= top + 0.002).all()
     assert pour.plan.imagined_turn_s == POURING.turn_s
     assert POURING.turn_s <= pour.plan.turn_s <= 1.05 * POURING.turn_s
-    last = cup_pose(CUP, pour.pivot_m, pour.theta_rad, POURING.gamma_0_rad)
+    last = cup_pose(CUP, pour.target.pivot_m, pour.target.theta_rad, POURING.gamma_0_rad)
     assert held(pour, "pour")[-1] == pytest.approx(last, abs=1e-6)
     assert times[-1] >= POURING.settle_s + POURING.turn_s + POURING.wait_s
 
 
-def test_ways_back_are_the_ways_out_reversed(pour: Planned):
+def test_segments_back_are_the_segments_out_reversed(pour: Planned):
     for out, back in [
         ("to the cup", "home"),
         ("grasp", "retreat"),
@@ -132,9 +132,9 @@ def test_ways_back_are_the_ways_out_reversed(pour: Planned):
     ]:
         there, here = pour.move(out).trajectory, pour.move(back).trajectory
         assert np.array_equal(there.joints_rad[::-1], here.joints_rad)
-    turn = pour.move("turn back").trajectory.joints_rad[::-1]
+    rotation = pour.move("turn back").trajectory.joints_rad[::-1]
     pouring = np.unique(pour.move("pour").trajectory.joints_rad, axis=0)
-    assert np.array_equal(np.unique(turn, axis=0), pouring)
+    assert np.array_equal(np.unique(rotation, axis=0), pouring)
 
 
 def test_cup_in_the_hand_never_comes_near_a_singular_configuration(pour: Planned):
@@ -174,6 +174,7 @@ def test_saves_and_loads(mug: Planned, tmp_path):
     assert loaded.digest == mug.plan.digest
     assert loaded.nearest == mug.plan.nearest
     assert [move.name for move in loaded.moves] == [move.name for move in mug.plan.moves]
+    assert all(isinstance(move.name, Segment) for move in loaded.moves)
     assert {move.phase for move in loaded.moves} == set(MovePhase)
     mug.check(loaded)
 

@@ -1,4 +1,4 @@
-"""Backing off after a stop: only along ways that were checked, whatever move was stopped, and where."""
+"""Backing off after a stop: only along checked paths, whatever move was stopped, and where."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from core.errors import MotionError
-from core.motion.pour.plan import MOVES, MovePhase, PlannedMove, PourPlan
+from core.motion.pour.plan import MOVES, MovePhase, PlannedMove, PourPlan, Segment
 from core.motion.pour.recovery import plan_back_off
 from core.motion.trajectory import SAMPLE_S, JointTrajectory
 
 CORNERS = np.cumsum(np.random.default_rng(3).uniform(-0.4, 0.4, (8, 6)), axis=0)
 
 
-def a_way(start, goal, duration_s=1.0):
+def a_move(start, goal, duration_s=1.0):
     u = np.linspace(0, 1, round(duration_s / SAMPLE_S) + 1)
     share = u * u * (3 - 2 * u)
     return JointTrajectory(np.arange(len(u)) * SAMPLE_S, start + share[:, None] * (goal - start))
@@ -23,9 +23,9 @@ def a_way(start, goal, duration_s=1.0):
 
 @pytest.fixture(scope="module")
 def plan():
-    out = [a_way(CORNERS[k], CORNERS[k + 1]) for k in range(7)]
-    ways = out + [way.reversed() for way in out[::-1]]
-    moves = tuple(PlannedMove(n, p, w, h, g) for (n, p, h, g), w in zip(MOVES, ways, strict=True))
+    out = [a_move(CORNERS[k], CORNERS[k + 1]) for k in range(7)]
+    everything = out + [part.reversed() for part in out[::-1]]
+    moves = tuple(PlannedMove(n, p, t, h, g) for (n, p, h, g), t in zip(MOVES, everything, strict=True))
     return PourPlan(0, 0, moves, np.eye(4), 0.02, ("a", "b"), 0.005, 0.0, 0.1, 1.0, 1.0)
 
 
@@ -45,7 +45,7 @@ def test_it_leads_home_along_the_plan(plan, index, share):
         assert before.trajectory.end_rad == pytest.approx(after.trajectory.start_rad)
     allowed = samples(plan.moves)
     for joints_rad in samples(moves)[::7]:
-        assert np.abs(allowed - joints_rad).max(axis=1).min() < 0.005, "beside every checked way"
+        assert np.abs(allowed - joints_rad).max(axis=1).min() < 0.005, "off every checked path"
     assert all(move.phase is MovePhase.BACK for move in moves)
 
 
@@ -65,20 +65,21 @@ def test_a_cup_that_is_being_taken_is_let_go_before_the_arm_leaves_its_station(p
 
 
 def test_it_begins_and_ends_at_rest_and_is_slower_than_the_plan(plan):
-    way = plan.moves[3].trajectory
-    first = plan_back_off(plan, plan.moves, 3, way.joints_rad[60])[0].trajectory
+    planned = plan.moves[3].trajectory
+    first = plan_back_off(plan, plan.moves, 3, planned.joints_rad[60])[0].trajectory
     speeds = np.abs(np.diff(first.joints_rad, axis=0)).max(axis=1) / SAMPLE_S
-    fastest = np.abs(np.diff(way.joints_rad, axis=0)).max() / SAMPLE_S
+    fastest = np.abs(np.diff(planned.joints_rad, axis=0)).max() / SAMPLE_S
     assert speeds[0] < 0.02 * fastest
     assert speeds[-1] < 0.02 * fastest
     assert speeds.max() < fastest
 
 
-def test_an_arm_a_little_beside_joins_its_way_slowly(plan):
-    beside_rad = plan.moves[3].trajectory.joints_rad[60] + [0.0, 0.03, 0.0, 0.0, 0.0, 0.0]
-    join = plan_back_off(plan, plan.moves, 3, beside_rad)[0]
-    assert join.name == "back on the way"
-    assert join.trajectory.start_rad == pytest.approx(beside_rad)
+def test_an_arm_slightly_off_rejoins_its_path_slowly(plan):
+    off_rad = plan.moves[3].trajectory.joints_rad[60] + [0.0, 0.03, 0.0, 0.0, 0.0, 0.0]
+    join = plan_back_off(plan, plan.moves, 3, off_rad)[0]
+    assert join.name is Segment.REJOIN
+    assert join.label == "return to the path"
+    assert join.trajectory.start_rad == pytest.approx(off_rad)
     assert join.holds_cup
     speeds = np.abs(np.diff(join.trajectory.joints_rad, axis=0)) / SAMPLE_S
     assert speeds.max() < 0.15
@@ -90,7 +91,7 @@ def test_an_arm_that_somebody_pushed_away_is_left_to_people(plan):
         plan_back_off(plan, plan.moves, 3, far_rad)
 
 
-def test_a_way_back_that_is_stopped_itself_goes_on_from_there(plan):
+def test_a_back_off_that_is_stopped_itself_continues_from_there(plan):
     moves = plan_back_off(plan, plan.moves, 5, plan.moves[5].trajectory.joints_rad[50])
     again = plan_back_off(plan, moves, 2, moves[2].trajectory.joints_rad[100])
     assert [move.name for move in again] == [move.name for move in moves[2:]]

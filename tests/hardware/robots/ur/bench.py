@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import socket
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,10 +14,11 @@ from core.geometry import FloatArray, make_pose, rotation_x
 from core.motion.arm_models import UR5, ArmModel
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import RobotError
-from hardware.robots.ur.move import UrMove
+from hardware.robots.ur.link import UrMove
 from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import AwakeClock
+from tests.patience import wait_until
 
 HOME = np.array([0.2, -1.6, 1.4, -1.5, -1.5, 0.1])
 NEAR = HOME + np.array([0.2, -0.1, 0.1, 0.15, -0.1, 0.2])
@@ -113,10 +113,3 @@ class Bench:
         np.testing.assert_allclose(self.joints(), before, atol=1e-4)
         self.robot.move_joints([before, before - 0.1], SPEED, ACCELERATION).wait(10)
         np.testing.assert_allclose(self.joints(), before - 0.1, atol=1e-3)
-
-
-def wait_until(is_so: Callable[[], bool], within_s: float = 10.0) -> None:
-    deadline_s = time.monotonic() + within_s
-    while not is_so():
-        assert time.monotonic() < deadline_s, "it never came to that"
-        time.sleep(0.002)

@@ -13,10 +13,10 @@ from core.motion.arm_models import UR5
 from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
+from hardware.grippers.tool_output import ToolOutputGripper
 from hardware.interfaces import RobotState
 from hardware.modes import RobotMode, SafetyMode
 from hardware.realtime import take_precedence
-from hardware.robots.ur.gripper import ToolOutputGripper
 from tests.awake import AwakeClock
 from tests.hardware.robots.ur.bench import (
     ACCELERATION,
@@ -27,8 +27,8 @@ from tests.hardware.robots.ur.bench import (
     T_FLANGE_TOOL,
     Bench,
     bent_way,
-    wait_until,
 )
+from tests.patience import wait_until
 
 
 def watch(bench: Bench, is_over: threading.Event, states: list[RobotState]) -> None:

@@ -17,7 +17,7 @@ from hardware.errors import (
     RobotStopped,
     TrackingLost,
 )
-from hardware.robots.ur.gripper import ToolOutputGripper
+from hardware.grippers.tool_output import ToolOutputGripper
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.robots.ur.bench import (
     HOME,
@@ -26,8 +26,10 @@ from tests.hardware.robots.ur.bench import (
     Bench,
     bent_way,
     driver,
-    wait_until,
 )
+from tests.patience import wait_until
+
+pytestmark = pytest.mark.system
 
 KINDS = pytest.mark.parametrize("kind", ["move_joints", "follow"])
 

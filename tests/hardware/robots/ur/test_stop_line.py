@@ -13,7 +13,8 @@ from hardware.errors import RobotError, RobotLost
 from hardware.robots.ur.probe import DASHBOARD_PORT
 from hardware.robots.ur.stop_line import StopLine
 from hardware.simulation.ur_controller.process import ControllerProcess
-from tests.hardware.robots.ur.bench import HOME, wait_until
+from tests.hardware.robots.ur.bench import HOME
+from tests.patience import wait_until
 
 
 @contextmanager
@@ -97,7 +98,7 @@ def test_somebody_else_is_not_taken_for_a_controller():
 
 def test_a_refusal_is_no_stop():
     local = ControllerProcess(version="5.11", joints_rad=HOME, faults=["local"])
-    refused = pytest.raises(RobotError, match="takes no stop")
+    refused = pytest.raises(RobotError, match="refuses to stop")
     with local as controller, line_to(controller) as line, refused:
         line.stop()
 

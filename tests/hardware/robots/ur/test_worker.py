@@ -17,7 +17,10 @@ import pytest
 from hardware.errors import RobotError, RobotLost, RobotStopped
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import AwakeClock
-from tests.hardware.robots.ur.bench import FAR, HOME, STANDS_WITHIN_S, Bench, driver, wait_until
+from tests.hardware.robots.ur.bench import FAR, HOME, STANDS_WITHIN_S, Bench, driver
+from tests.patience import wait_until
+
+pytestmark = pytest.mark.system
 
 NOTICED_WITHIN_S = 0.5
 STANDS_STILL_S = 0.6
@@ -61,10 +64,7 @@ def test_the_watchdog_alone_makes_the_arm_stand(bench: Bench, number: int) -> No
 @pytest.mark.parametrize("kind", ["move_joints", "follow"])
 def test_a_machine_that_stood_still_is_no_fault(bench: Bench, kind: str) -> None:
     move = bench.begin(kind)
-    controllers = [
-        child.pid for child in psutil.Process().children() if "ur_controller" in " ".join(child.cmdline())
-    ]
-    everything = " ".join(map(str, [*controllers, worker_of(bench), os.getpid()]))
+    everything = " ".join(map(str, [bench.controller.pid, worker_of(bench), os.getpid()]))
     command = f"kill -STOP {everything}; sleep {STANDS_STILL_S}; kill -CONT {everything}"
     subprocess.run(["sh", "-c", command], check=True)
     move.wait(10)

@@ -7,10 +7,10 @@ from core.mesh import TriangleMesh
 from core.progress import Reporter
 from core.workers import WorkerPool
 from hardware.simulation.objects import builtin_object
+from hardware.simulation.pour_outcome.bodies import PlatformBox
 from hardware.simulation.pour_outcome.driven_path import DrivenPath
 from hardware.simulation.pour_outcome.outcome import TableOutcome, simulate_outcome
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
-from hardware.simulation.pour_outcome.table_world import PlatformBox
 from tests.hardware.simulation.pour_outcome.paths import CUP
 
 TABLE_M = 0.015

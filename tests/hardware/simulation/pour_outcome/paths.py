@@ -4,7 +4,8 @@ import numpy as np
 
 from core.geometry import FloatArray, make_pose
 from core.imagination.cup import cup_pose, pour_angle, pour_duration_s
-from core.parameters.imagination import CupParameters, PouringParameters
+from core.parameters.bodies import CupParameters
+from core.parameters.imagination import PouringParameters
 from hardware.simulation.pour_outcome.driven_path import DrivenPath
 
 CUP = CupParameters()

@@ -59,13 +59,16 @@ def test_hull_and_skin_together_have_the_candys_size() -> None:
 def test_inertia_is_that_of_a_solid_of_the_candys_volume() -> None:
     """Against a sum over a fine grid of points."""
     grid = np.stack(np.meshgrid(*[np.linspace(-1, 1, 81)] * 3), axis=-1).reshape(-1, 3)
-    half_m = np.array([0.0066, 0.0066, 0.0035])
+    usual = OutcomeSettings()
+    half_m = np.array([usual.candy_diameter_m, usual.candy_diameter_m, usual.candy_height_m]) / 2
     for shape, is_inside in (
         ("lentil", (grid**2).sum(axis=1) < 1),
         ("tablet", (grid[:, :2] ** 2).sum(axis=1) < 1),
     ):
         x, y, z = (grid[is_inside] * half_m).T
-        expected = 0.0009 * np.array([np.mean(y**2 + z**2), np.mean(x**2 + z**2), np.mean(x**2 + y**2)])
+        expected = usual.candy_mass_kg * np.array(
+            [np.mean(y**2 + z**2), np.mean(x**2 + z**2), np.mean(x**2 + y**2)]
+        )
         settings = OutcomeSettings(candy_shape=shape)
         assert inertia_kg_m2(settings, 1.0) == pytest.approx(expected, rel=0.05)
 

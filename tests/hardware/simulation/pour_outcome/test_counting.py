@@ -4,7 +4,7 @@ import pytest
 from core.geometry import transform_points
 from core.mesh import TriangleMesh
 from hardware.simulation.objects import builtin_object
-from hardware.simulation.pour_outcome.counting import in_object
+from hardware.simulation.pour_outcome.outcome import in_object
 from hardware.simulation.pour_outcome.playing import inside_cup
 from tests.hardware.simulation.pour_outcome.paths import CUP, UPRIGHT_RAD, turned
 

@@ -62,7 +62,7 @@ def test_long_standing_still_is_left_out_at_the_ends_only() -> None:
     poses += [poses[-1]] * 500 + straight(poses[-1], stay[:3, 3], 1.0) + [stay] * 1000
     poses = [make_pose(pose[:3, :3], pose[:3, 3] + shift) for pose, shift in zip(poses, noise, strict=False)]
     path = path_of(poses)
-    shorter = path.without_standing()
+    shorter = path.trimmed()
     assert 6.0 < shorter.duration_s < 6.5
     assert shorter.times_s[0] == pytest.approx(8 - 0.2, abs=0.1)
     assert np.allclose(shorter.at(np.array([8.5])), path.at(np.array([8.5])))
@@ -70,7 +70,7 @@ def test_long_standing_still_is_left_out_at_the_ends_only() -> None:
 
 def test_a_cup_that_never_moves_keeps_its_path() -> None:
     path = path_of([np.eye(4)] * 50)
-    assert path.without_standing() is path
+    assert path.trimmed() is path
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from core.mesh import TriangleMesh
 from core.progress import Reporter
 from core.workers import WorkerPool
 from hardware.simulation.objects import builtin_object
-from hardware.simulation.objects.loft import turned as turned_body
+from hardware.simulation.objects import turned as turned_body
 from hardware.simulation.pour_outcome.driven_path import DrivenPath
 from hardware.simulation.pour_outcome.outcome import TableOutcome
 from tests.hardware.simulation.pour_outcome.conftest import (
@@ -203,7 +203,7 @@ from core.workers import WorkerPool
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.pour_outcome.outcome import simulate_outcome
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
-from hardware.simulation.pour_outcome.table_world import PlatformBox
+from hardware.simulation.pour_outcome.bodies import PlatformBox
 from tests.hardware.simulation.pour_outcome.paths import CUP, tipping_path
 
 if __name__ == "__main__":

@@ -6,7 +6,6 @@ import pytest
 
 import hardware.simulation.pour_outcome as package
 from core.mesh import TriangleMesh
-from core.parameters import Parameters
 from core.parameters.settings import describe
 from hardware.simulation.pour_outcome.outcome import TableOutcome
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
@@ -15,6 +14,7 @@ from tests.hardware.simulation.pour_outcome.paths import tipping_path
 
 FOLDER = Path(package.__file__).parent
 ALTERED = {
+    "engine": "mujoco",
     "seed": 1,
     "n_candies": 9,
     "candy_shape": "tablet",
@@ -46,6 +46,7 @@ ALTERED = {
 }
 COUNTING = {"rim_margin_m"}
 """Tested with the counting."""
+OF_MUJOCO = {"contact_rad_s": 700.0, "slow_step_s": 0.0005}
 
 
 def same(one: TableOutcome, other: TableOutcome) -> bool:
@@ -71,7 +72,7 @@ def test_the_usual_pour_touches_bowl_and_platform(usual: TableOutcome) -> None:
 
 
 def test_all_settings_are_looked_at() -> None:
-    assert {facts.name for facts in describe(OutcomeSettings())} == set(ALTERED) | COUNTING
+    assert {facts.name for facts in describe(OutcomeSettings())} == set(ALTERED) | set(OF_MUJOCO) | COUNTING
 
 
 @pytest.mark.parametrize("name", ALTERED)
@@ -82,30 +83,22 @@ def test_each_setting_is_felt(
     assert not same(usual, altered)
 
 
+@pytest.mark.parametrize("name", OF_MUJOCO)
+def test_each_setting_of_mujoco_is_felt(
+    simulate: Simulate, bowl: TriangleMesh, rim_m: np.ndarray, name: str
+) -> None:
+    usual, altered = (
+        simulate(bowl, tipping_path(rim_m), n_candies=4, engine="mujoco", **changes)
+        for changes in ({}, {name: OF_MUJOCO[name]})
+    )
+    assert not same(usual, altered)
+
+
 def test_every_setting_has_unit_range_and_source() -> None:
     for facts in describe(OutcomeSettings()):
         assert facts.doc
         assert facts.source
         assert facts.choices or (facts.low is not None and facts.high is not None)
-
-
-def test_the_table_is_not_the_imagination() -> None:
-    """Where the two have the same quantity, they have different values."""
-    table, imagined = OutcomeSettings(), Parameters()
-    contact = imagined.pouring.contact
-    pairs = [
-        (table.candy_shape, imagined.particle.shape),
-        (table.candy_friction, contact.lateral_friction),
-        (table.cup_friction, contact.lateral_friction),
-        (table.object_friction, contact.lateral_friction),
-        (table.rolling_arm_m, contact.rolling_friction),
-        (table.wall_restitution, contact.restitution),
-        (table.rate_hz, imagined.solver.rate_hz),
-        (table.iterations, imagined.solver.iterations),
-        (table.contact_breaking_m, imagined.solver.contact_breaking_m),
-        (table.max_substeps, imagined.solver.substeps),
-    ]
-    assert all(one != other for one, other in pairs)
 
 
 def test_nothing_is_taken_from_the_imagination_but_geometry_and_forms() -> None:
@@ -116,7 +109,8 @@ def test_nothing_is_taken_from_the_imagination_but_geometry_and_forms() -> None:
         "core.imagination.engine": {"bullet"},
         "core.imagination.recording": {"Recorder", "Recording"},
         "core.parameters.fields": {"OURS", "Group", "choice", "quantity"},
-        "core.parameters.imagination": {"CupParameters"},
+        "core.parameters.settings": {"apply_settings"},
+        "core.parameters.bodies": {"CupParameters"},
     }
     for file in sorted(FOLDER.glob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):

@@ -73,7 +73,7 @@ def _kept(client: Any) -> Any:
 def _tell(address: str, *lines: str) -> None:
     import socket
 
-    from hardware.simulation.ur_controller.addresses import CONTROL_PORT
+    from hardware.simulation.ur_controller.identity import CONTROL_PORT
 
     with socket.create_connection((address, CONTROL_PORT), 5) as connection:
         for line in lines:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from hardware.simulation.ur_controller.addresses import HOME_RAD
 from hardware.simulation.ur_controller.controller import Controller
-from hardware.simulation.ur_controller.identity import identity
+from hardware.simulation.ur_controller.identity import HOME_RAD, identity
 from hardware.simulation.ur_controller.registers import COMMAND_REGISTER
 
 SCRIPT = "def rtde_control():\nend\n"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hardware.robots.trapezoid import Trapezoid
+from hardware.robots.joint_motion import Trapezoid
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.simulation.ur_controller import clients
 

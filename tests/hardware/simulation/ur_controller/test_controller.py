@@ -9,12 +9,11 @@ import pytest
 
 from core.errors import InputError
 from hardware.modes import RobotMode, SafetyMode
-from hardware.robots.trapezoid import Trapezoid
-from hardware.simulation.ur_controller.addresses import HOME_RAD
+from hardware.robots.joint_motion import Trapezoid
 from hardware.simulation.ur_controller.controller import RuntimeState
-from hardware.simulation.ur_controller.identity import identity
-from hardware.simulation.ur_controller.outputs import Outputs
+from hardware.simulation.ur_controller.identity import HOME_RAD, identity
 from hardware.simulation.ur_controller.rtde_protocol import OUTPUT_TYPES, layout
+from hardware.simulation.ur_controller.rtde_server import Outputs
 from tests.hardware.simulation.ur_controller.desk import DONE, SCRIPT, Desk
 
 HOME = np.array(HOME_RAD)

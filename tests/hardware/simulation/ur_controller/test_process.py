@@ -16,8 +16,9 @@ from typing import Any
 import psutil
 import pytest
 
+from core.errors import PoursightError
 from hardware.errors import RobotError
-from hardware.simulation.ur_controller.addresses import (
+from hardware.simulation.ur_controller.identity import (
     CONTROL_PORT,
     DASHBOARD_PORT,
     HOME_RAD,
@@ -27,6 +28,7 @@ from hardware.simulation.ur_controller.addresses import (
 from hardware.simulation.ur_controller.process import ControllerProcess
 from hardware.simulation.ur_controller.rtde_protocol import OUTPUT_TYPES, Kind, frame
 from tests.awake import AwakeClock
+from tests.patience import HANG_S, wait_until
 
 ROOT = Path(__file__).resolve().parents[4]
 LIMIT_S = 5.0
@@ -49,11 +51,6 @@ def listens(address: str, port: int = DASHBOARD_PORT) -> bool:
     except OSError:
         return False
     return True
-
-
-def newest_child() -> psutil.Process:
-    children = [p for p in psutil.Process().children() if "ur_controller" in " ".join(p.cmdline())]
-    return max(children, key=lambda child: child.create_time())
 
 
 def wait_until_gone(address: str) -> float:
@@ -91,10 +88,10 @@ def test_it_dies_with_its_parent(how: signal.Signals) -> None:
 
 
 @pytest.mark.parametrize(
-    "wish", [{"model": "UR10"}, {"version": "x"}, {"address": "10.0.0.1"}, {"faults": ["dance"]}]
+    "wanted", [{"model": "UR10"}, {"version": "x"}, {"address": "10.0.0.1"}, {"faults": ["dance"]}]
 )
-def test_what_cannot_be_is_explained(wish: dict[str, Any]) -> None:
-    with pytest.raises(RobotError, match=r"\.$"), ControllerProcess(**wish):
+def test_what_cannot_be_is_explained(wanted: dict[str, Any]) -> None:
+    with pytest.raises(PoursightError, match=r"\.$"), ControllerProcess(**wanted):
         pass
 
 
@@ -130,15 +127,13 @@ def test_the_clock_runs_as_fast_as_told_without_drifting() -> None:
 
 def test_after_being_suspended_it_goes_on_without_running_after_the_clock_for_long() -> None:
     with ControllerProcess(speed_up=4) as controller:
-        child = newest_child()
+        child = psutil.Process(controller.pid)
         first_s = state(controller)["time_s"]
         child.suspend()
         time.sleep(2.0)
         child.resume()
-        deadline_s = time.monotonic() + LIMIT_S
-        while state(controller)["time_s"] == first_s:  # what waited is answered before the clock goes on
-            assert time.monotonic() < deadline_s
-            time.sleep(0.01)
+        # What waited is answered before the clock goes on.
+        wait_until(lambda: state(controller)["time_s"] != first_s)
         assert state(controller)["time_s"] - first_s < 4 * 1.6
 
 
@@ -191,7 +186,7 @@ def test_kill_and_a_schedule() -> None:
 
 def test_connections_leave_nothing_behind() -> None:
     with ControllerProcess(speed_up=4) as controller:
-        child = newest_child()
+        child = psutil.Process(controller.pid)
         state(controller)
         before = child.num_fds()
         for _ in range(40):
@@ -212,7 +207,7 @@ def test_a_client_that_never_reads_costs_no_memory() -> None:
         names = ",".join(sorted(OUTPUT_TYPES)).encode()
         with socket.create_connection((controller.address, RTDE_PORT), LIMIT_S) as connection:
             connection.sendall(frame(Kind.SETUP_OUTPUTS, b"\x00" * 8 + names) + frame(Kind.START))
-            child = newest_child()
+            child = psutil.Process(controller.pid)
             time.sleep(0.5)
             before = child.memory_info().rss
             time.sleep(1.5)
@@ -241,13 +236,13 @@ def test_the_command_line_serves_until_it_is_told_to_end(how: signal.Signals) ->
     assert address in line and "UR5e" in line
     assert listens(address)
     process.send_signal(how)
-    _, complaints = process.communicate(timeout=LIMIT_S)
+    _, complaints = process.communicate(timeout=HANG_S)
     assert process.returncode == 0 and complaints == b""
 
 
 def test_the_command_line_explains_what_cannot_be() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "app.cli", "ur-controller", "--address", "10.0.0.1"],
-        capture_output=True, cwd=ROOT, timeout=20, check=False,
+        capture_output=True, cwd=ROOT, timeout=HANG_S, check=False,
     )  # fmt: skip
     assert done.returncode == 1 and done.stderr.decode().count("\n") == 1

@@ -1,10 +1,12 @@
 import pytest
 
-from app.jobs.face import JobFace
 from app.jobs.library_work import LibraryWork
-from app.library.exporting import report_is_current
-from app.remembered import remembered_parameters
+from app.jobs.service import JobReporter
+from app.library.exchange import report_is_current
+from app.library.session_folder import remembered_parameters
 from core.session import Session
+
+pytestmark = pytest.mark.system
 
 
 @pytest.fixture
@@ -16,7 +18,7 @@ def work():
 
 @pytest.fixture
 def face():
-    return JobFace(lambda message: None)
+    return JobReporter(lambda message: None)
 
 
 def test_a_report_that_is_missing_is_written_before_it_is_exported(block_session, work, face, tmp_path):

@@ -3,7 +3,7 @@ import pytest
 from PySide6.QtWidgets import QLabel, QPushButton
 
 from app.gui.pages.imagination.page import ImaginationPage
-from app.jobs.render_news import PictureDrawn
+from app.jobs.session_work import PictureDrawn
 from core.parameters import apply_settings
 from tests.app.sessions import QUICK
 
@@ -21,7 +21,7 @@ def page(qtbot, desk):
 def opened(page, desk, qtbot):
     def open_session(folder):
         desk.workspace.open(folder)
-        qtbot.waitUntil(lambda: page.drop is not None, timeout=10_000)
+        qtbot.waitUntil(lambda: page.content is not None)
         return page
 
     return open_session
@@ -49,37 +49,37 @@ def test_without_a_model_it_says_what_will_be_here_and_leads_to_the_scan(page, d
     assert wanted.args == ["scan"]
 
 
-def test_a_container_is_told_with_its_reason_its_seed_and_its_footprint(opened, mug_session):
+def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened, mug_session):
     page = opened(mug_session)
-    found = page.drop.containability
-    verdict, capacity = text(page, "drop_verdict"), page.drop.capacity
+    found = page.content.containability
+    verdict, capacity = text(page, "drop_verdict"), page.content.capacity
     assert verdict.startswith(f"Open container: it holds {capacity.n_candies:.0f} candies")
     assert text(page, "drop_reason").startswith(
-        f"By the paper's rule an open container: {found.n_in} of {found.n_drop} candies stayed"
+        f"By Omega an open container: {found.n_in} of {found.n_drop} candies stayed"
     )
     assert page.side.omega.omega == found.omega
     assert f"{found.n_in} of {found.n_drop}" in page.side.footprint.accessibleDescription()
     facts = {fact.title: fact.value for fact in page.side.facts.facts}
     assert facts["Seed"] == "0"
     assert facts["Holds"] == f"{capacity.n_candies:.0f} candies, {capacity.bulk_ml:.0f} ml"
-    assert f"{np.degrees(page.drop.holding.holds_rad):.0f}°" in facts["Keeps all to"]
-    assert facts["Still in it"].endswith(str(found.n_in))
+    assert f"{np.degrees(page.content.retention.holds_rad):.0f}°" in facts["Tilted"]
+    assert facts["Inside"].endswith(str(found.n_in))
     assert f"{found.n_in} kept" in text(page, "drop_legend")
 
 
-def test_a_block_is_told_why_it_is_no_container(opened, block_session):
+def test_a_block_says_why_it_is_not_a_container(opened, block_session):
     page = opened(block_session)
     assert text(page, "drop_verdict").startswith("Not an open container: it holds no candy")
-    assert text(page, "drop_reason").startswith("By the paper's rule no open container: 0 of")
+    assert text(page, "drop_reason").startswith("By Omega not an open container: 0 of")
 
 
 def test_the_drop_is_replayed_with_its_phases(opened, mug_session):
     page = opened(mug_session)
-    timeline, drop = page.replay.timeline, page.drop
+    timeline, drop = page.replay.timeline, page.content
     assert timeline.time_s == pytest.approx(drop.moments.duration_s)
     assert text(page, "drop_now") == "End"
     for phase, words in zip(
-        drop.phases, ("fall and settle", "15° about x", "15° about y", "Shoved along +x"), strict=True
+        drop.phases, ("fall and settle", "15° about x", "15° about y", "Pushed along +x"), strict=True
     ):
         timeline.set_time(phase.begin_s + 0.05)
         assert words in text(page, "drop_now")
@@ -99,7 +99,15 @@ def test_the_result_is_stale_when_a_parameter_changed_and_fresh_after_undo(opene
     assert page.pictures.button.isEnabled()
 
 
-def test_footprint_and_parameters_share_a_place_and_the_button_tells_what_differs(opened, mug_session, desk):
+@pytest.mark.parametrize("change_of", [{"holding__n_load": 8}, {"capacity__n_fillings": 2}])
+def test_a_parameter_of_the_judgement_asks_to_imagine_again(opened, mug_session, desk, change_of):
+    page = opened(mug_session)
+    assert not primary(page).isEnabled()
+    change(desk, **change_of)
+    assert primary(page).isEnabled()
+
+
+def test_footprint_and_parameters_share_a_place_and_the_button_says_what_differs(opened, mug_session, desk):
     page = opened(mug_session)
     assert page.side.footprint.isVisible()
     button = page.findChild(QPushButton, "side_page_parameters")
@@ -115,7 +123,7 @@ def test_footprint_and_parameters_share_a_place_and_the_button_tells_what_differ
 
 def test_news_of_another_session_is_not_shown(opened, mug_session, desk, tmp_path):
     page = opened(mug_session)
-    desk.jobs.news.emit(PictureDrawn(tmp_path / "another", tmp_path / "drop_1_start.png"))
+    desk.jobs.event_received.emit(PictureDrawn(tmp_path / "another", tmp_path / "drop_1_start.png"))
     assert page.pictures.strip.pictures == ()
 
 
@@ -123,7 +131,7 @@ def test_a_damaged_drop_is_explained_on_the_page(page, desk, mug_session, qtbot)
     (mug_session / "containability" / "drop.npz").write_bytes(b"")
     desk.workspace.open(mug_session)
     failed = page.findChild(QLabel, "drop_failed")
-    qtbot.waitUntil(failed.isVisible, timeout=10_000)
+    qtbot.waitUntil(failed.isVisible)
     assert "drop.npz" in failed.text()
     change(desk, seed=3)  # it stays explained
     assert failed.isVisible()
@@ -133,31 +141,32 @@ def test_a_damaged_drop_is_explained_on_the_page(page, desk, mug_session, qtbot)
 def test_another_session_leaves_nothing_of_the_one_before(opened, mug_session, desk, tmp_path):
     page = opened(mug_session)
     desk.workspace.open(tmp_path / "new")
-    assert page.drop is None
+    assert page.content is None
     assert page.replay.scene.layers() == ()
     assert page.replay.timeline.duration_s == 0
     assert "candies are dropped" in text(page, "drop_verdict")
 
 
+@pytest.mark.system
 def test_imagined_with_a_high_threshold_a_mug_is_none_and_its_pictures_fill_the_strip(
     opened, mug_session, desk, qtbot
 ):
     page = opened(mug_session)
-    former = page.drop
+    former = page.content
     change(desk, containability__capacity_threshold=0.9, evidence__films=False)
     primary(page).click()
     assert not primary(page).isEnabled()
-    qtbot.waitUntil(lambda: page.drop is not former and desk.jobs.is_idle, timeout=60_000)
+    qtbot.waitUntil(lambda: page.content is not former and desk.jobs.is_idle)
     assert text(page, "drop_verdict").startswith("Not an open container")
     assert "a container holds more than 90" in text(page, "drop_verdict")
     assert "an open container" in text(page, "drop_reason")
     seen = []
-    desk.jobs.news.connect(
+    desk.jobs.event_received.connect(
         lambda _: seen.append(sum(picture.path is not None for picture in page.pictures.strip.pictures))
     )
     page.pictures.button.click()
     assert page.pictures.strip.pictures[0].caption == "Start"
-    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=60_000)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)
     assert seen == [1, 2, 3, 4, 5, 6]
     paths = [picture.path for picture in page.pictures.strip.pictures]
     assert [path.name for path in paths if path.parent.name == "evidence"] == [path.name for path in paths]

@@ -18,15 +18,15 @@ def page(desk, qtbot, mug_session):
     with qtbot.waitExposed(page):
         page.show()
     desk.workspace.open(mug_session)
-    qtbot.waitUntil(lambda: page._pours is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: page.content is not None)
     return page
 
 
 def test_a_click_on_a_pivot_selects_its_pour(page, qtbot):
-    scene, grid = page._scene.scene, page._pours.grid
+    scene, grid = page._scene.scene, page.content.grid
     scene.look_from("top")
     page.select(4, 0)
-    camera, canvas = scene._navigator.camera, scene._canvas.widget
+    camera, canvas = scene._navigator.camera, scene._canvas
     pixels = camera.project(grid.pivot_m.reshape(-1, 3), (canvas.width(), canvas.height()))
     picked = []
     for i in (0, 6):

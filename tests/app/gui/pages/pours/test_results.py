@@ -7,16 +7,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.gui.pages.pours.comparison import OtherPours, load_grid, one_direction, scratch_session
-from app.gui.pages.pours.results import load_pours
-from app.gui.pages.pours.scene import map_rotation_deg
-from app.gui.pages.pours.words import (
-    chosen_sentence,
+from app.gui.pages.pours.choice import chosen_sentence, feasibility_sentence, why_sentences
+from app.gui.pages.pours.comparison import (
+    OtherPours,
     comparison_sentence,
-    feasibility_sentence,
-    why_sentences,
+    load_grid,
+    one_direction,
+    scratch_session,
 )
-from app.motion_record import current_motions
+from app.gui.pages.pours.page import map_rotation_deg
+from app.gui.pages.pours.results import PoursKey, load_pours
+from app.operations.choosing import current_motions
 from core.errors import SessionError
 from core.session import Session
 from core.session.operator_choice import CHOICE_FILE
@@ -28,19 +29,19 @@ def cell():
     return read_cell(SIMULATED_CELL)
 
 
-def test_a_container_with_the_arms_word(mug_session, cell):
-    pours = load_pours(mug_session, cell, None)
+def test_a_container_with_what_the_arm_can_do(mug_session, cell):
+    pours = load_pours(PoursKey(mug_session, cell, None))
     assert pours.grid.p.shape == (8, 3)
-    assert pours.motions is not None and pours.stands_in_cell
+    assert pours.motions is not None and pours.is_in_cell
     said = chosen_sentence(pours)
     assert said.startswith("Chosen: from ") and "reachable" in said and said.endswith(" mm clearance.")
     assert "The arm can make" in why_sentences(pours)[-1]
-    again = load_pours(mug_session, cell, pours)
+    again = load_pours(PoursKey(mug_session, cell, pours))
     assert again.grid is pours.grid, "what is the same is not read again"
 
 
 def test_the_replay_ends_as_it_was_counted(mug_session, cell):
-    pours = load_pours(mug_session, cell, None)
+    pours = load_pours(PoursKey(mug_session, cell, None))
     for i, j in np.ndindex(8, 3):
         counted = pours.grid.n_in[i, j, 0]
         assert abs(int(pours.landed(i, j).sum()) - counted) <= 1, "positions are kept in steps of 0.1 mm"
@@ -49,33 +50,33 @@ def test_the_replay_ends_as_it_was_counted(mug_session, cell):
 def test_motions_for_another_cell_do_not_count(mug_session, cell):
     moved = cell.model_copy(update={"robot": cell.robot.model_copy(update={"address": "10.0.0.7"})})
     assert current_motions(Session.open(mug_session), cell) is not None
-    pours = load_pours(mug_session, moved, None)
+    pours = load_pours(PoursKey(mug_session, moved, None))
     assert pours.motions is None
     assert "not yet checked with the arm" in chosen_sentence(pours)
 
 
 def test_no_container_says_why_with_numbers(block_session, cell):
-    pours = load_pours(block_session, cell, None)
+    pours = load_pours(PoursKey(block_session, cell, None))
     assert pours.grid is None and pours.chosen is None
-    assert "no open container" in chosen_sentence(pours)
+    assert "not an open container" in chosen_sentence(pours)
     assert "Not an open container: it holds no candy; a container holds more" in why_sentences(pours)[0]
 
 
-def test_a_mesh_stands_in_no_cell(mug_session, cell):
-    pours = replace(load_pours(mug_session, cell, None), motions=None, stands_in_cell=False)
+def test_a_mesh_is_in_no_cell(mug_session, cell):
+    pours = replace(load_pours(PoursKey(mug_session, cell, None)), motions=None, is_in_cell=False)
     assert chosen_sentence(pours).endswith("imagined only.")
-    assert "stands in no cell" in feasibility_sentence(pours, *pours.chosen)
+    assert "not in the cell" in feasibility_sentence(pours, *pours.chosen)
 
 
-def test_a_damaged_choice_is_told(mug_session, cell):
+def test_a_damaged_choice_is_reported(mug_session, cell):
     (mug_session / CHOICE_FILE).write_text("{")
-    pours = load_pours(mug_session, cell, None)
+    pours = load_pours(PoursKey(mug_session, cell, None))
     assert pours.operator is None and "withdraw" in pours.problem
     assert pours.problem in why_sentences(pours)
 
 
 def test_a_direction_of_the_grid_needs_no_run(mug_session, cell):
-    grid = load_pours(mug_session, cell, None).grid
+    grid = load_pours(PoursKey(mug_session, cell, None)).grid
     row = one_direction(grid, float(grid.theta_rad[3]) + 2 * np.pi)
     assert np.array_equal(row.p, grid.p[3:4])
     assert one_direction(grid, float(grid.theta_rad[3]) + 0.2) is None
@@ -84,8 +85,8 @@ def test_a_direction_of_the_grid_needs_no_run(mug_session, cell):
     assert "just as good" in comparison_sentence(grid, OtherPours("itself", grid))
 
 
-def test_each_pour_is_held_against_the_nearest_direction(mug_session, cell):
-    grid = load_pours(mug_session, cell, None).grid
+def test_each_pour_is_compared_with_the_nearest_direction(mug_session, cell):
+    grid = load_pours(PoursKey(mug_session, cell, None)).grid
     turned = np.roll(np.arange(8), 3)
     other = OtherPours(
         "turned",
@@ -114,7 +115,7 @@ def test_a_scratch_session_has_the_collision_model_and_no_pours(mug_session, tmp
 
 
 def test_what_has_no_pours_cannot_be_compared_with(block_session, tmp_path):
-    with pytest.raises(SessionError, match="no open container"):
+    with pytest.raises(SessionError, match="not an open container"):
         load_grid(block_session)
     with pytest.raises(SessionError, match="no session"):
         load_grid(Path(tmp_path / "nowhere"))

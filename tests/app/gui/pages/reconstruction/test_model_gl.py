@@ -9,16 +9,16 @@ from PySide6.QtGui import QImage
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtTest import QTest
 
-from app.gui.pages.reconstruction.loading import key_of, load
-from app.gui.pages.reconstruction.view_part import ModelView
-from core.session import Session
+from app.gui.pages.reconstruction.loading import key_of, load_model
+from app.gui.pages.reconstruction.view import ModelView
+from core.pipeline.session_view import SessionView
 
 pytestmark = pytest.mark.gl
 
 
 @pytest.fixture
 def view(qtbot, mug_session):
-    loaded = load(key_of(Session.open(mug_session)))
+    loaded = load_model(key_of(SessionView.of(mug_session)))
     view = ModelView()
     view.resize(660, 560)
     qtbot.addWidget(view)

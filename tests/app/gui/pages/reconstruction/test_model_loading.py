@@ -4,19 +4,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.gui.pages.reconstruction.loading import difference_scale, key_of, load
+from app.gui.pages.reconstruction.loading import key_of, load_model
+from app.gui.pages.reconstruction.modes import difference_scale
 from app.gui.views.scene import box_mesh
 from core.collision import CollisionModel
 from core.errors import SessionError
 from core.mesh import TriangleMesh
-from core.ply import write_ply
+from core.mesh_file import write_ply
+from core.pipeline.session_view import SessionView
 from core.scan import CropBox
 from core.session import Session
 
 
 def test_a_scanned_session_has_all_there_is_to_show(mug_session):
     session = Session.open(mug_session)
-    loaded = load(key_of(session))
+    loaded = load_model(key_of(SessionView(session)))
     model = loaded.model
     assert loaded.own_box == CropBox((-0.3, -0.55, 0.03), (0.18, -0.15, 0.35))
     assert model.is_closed
@@ -32,14 +34,14 @@ def test_what_belongs_to_another_surface_is_left_out(mug_session):
         path = mug_session / stage / "record.json"
         record = json.loads(path.read_text())
         path.write_text(json.dumps(record | {"inputs": record["inputs"] | {"reconstruction": "another"}}))
-    model = load(key_of(Session.open(mug_session))).model
+    model = load_model(key_of(SessionView.of(mug_session))).model
     assert model.quality is None
     assert model.collision is None
 
 
 def test_a_scan_alone_has_its_crop_box(mug_session):
-    key = replace(key_of(Session.open(mug_session)), surface="", quality="", collision="")
-    loaded = load(key)
+    key = replace(key_of(SessionView.of(mug_session)), surface="", quality="", collision="")
+    loaded = load_model(key)
     assert loaded.model is None
     assert loaded.own_box is not None
 
@@ -55,7 +57,7 @@ def test_an_imported_mesh_has_no_views_and_its_parts_have_tints(tmp_path):
         digest = session.record("mesh").digest
         with session.writing("collision", inputs={"mesh": digest}, parameters={}) as folder:
             CollisionModel("given", parts, parts[0]).save(folder)
-    loaded = load(key_of(session))
+    loaded = load_model(key_of(SessionView(session)))
     assert loaded.own_box is None
     assert loaded.model.reconstruction is None
     assert loaded.model.quality is None
@@ -67,7 +69,7 @@ def test_an_imported_mesh_has_no_views_and_its_parts_have_tints(tmp_path):
 def test_a_damaged_file_is_explained(mug_session):
     (mug_session / "reconstruction" / "result.json").write_text("{")
     with pytest.raises(SessionError, match=r"result\.json"):
-        load(key_of(Session.open(mug_session)))
+        load_model(key_of(SessionView.of(mug_session)))
 
 
 @pytest.mark.parametrize(("most_m", "limit_mm"), [(0.0, 0.5), (0.0009, 1), (0.0012, 2), (0.031, 50)])

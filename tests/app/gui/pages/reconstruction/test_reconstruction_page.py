@@ -5,8 +5,8 @@ import pytest
 from PySide6.QtWidgets import QDoubleSpinBox, QLabel, QPushButton
 
 from app.gui.pages.reconstruction.page import ReconstructionPage
+from core.mesh_file import write_ply
 from core.parameters import apply_settings
-from core.ply import write_ply
 from core.session import Session
 
 
@@ -22,7 +22,7 @@ def page(qtbot, desk):
 @pytest.fixture
 def mug_page(page, desk, mug_session, qtbot):
     desk.workspace.open(mug_session)
-    qtbot.waitUntil(lambda: page.model is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: page.model is not None)
     return page
 
 
@@ -107,7 +107,7 @@ def test_the_inside_of_an_opening_that_no_view_saw_is_shown(page, desk, mug_sess
     arrays = dict(np.load(mug_session / "quality" / "quality.npz"))
     np.savez(mug_session / "quality" / "quality.npz", **arrays | {"frontier_m": np.full((5, 3), 0.1)})
     desk.workspace.open(mug_session)
-    qtbot.waitUntil(lambda: page.model is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: page.model is not None)
     assert "hidden" not in page.view.scene.layers()
     mode(page, "coverage").click()
     assert "hidden" in page.view.scene.layers()
@@ -134,7 +134,7 @@ def test_the_crop_box_is_edited_in_numbers_and_by_its_handles(mug_page, desk):
 
 def test_a_crop_box_without_room_is_refused_in_a_sentence(mug_page, desk, qtbot):
     before = desk.workspace.parameters
-    with qtbot.waitSignal(desk.told) as told:
+    with qtbot.waitSignal(desk.message) as told:
         number(mug_page, "crop_max_z").setValue(20)
     assert "crop_max_m must exceed crop_min_m" in told.args[0]
     assert desk.workspace.parameters == before
@@ -153,7 +153,7 @@ def test_the_ruler_measures_the_mug(mug_page):
 
 
 def test_an_imported_mesh_says_what_it_lacks(page, desk, mug_session, tmp_path, qtbot):
-    from core.ply import read_ply
+    from core.mesh_file import read_ply
 
     mesh = read_ply(mug_session / "reconstruction" / "mesh.ply")
     with (
@@ -162,7 +162,7 @@ def test_an_imported_mesh_says_what_it_lacks(page, desk, mug_session, tmp_path, 
     ):
         write_ply(folder / "mesh.ply", mesh)
     desk.workspace.open(tmp_path / "mesh")
-    qtbot.waitUntil(lambda: page.model is not None, timeout=10_000)
+    qtbot.waitUntil(lambda: page.model is not None)
     assert text(page, "model_verdict") == "Imported mesh"
     assert "no pose health" in text(page, "model_reasons")
     assert not page.side.table.isVisible()
@@ -176,7 +176,7 @@ def test_a_damaged_model_is_explained_on_the_page(page, desk, mug_session, qtbot
     (mug_session / "reconstruction" / "result.json").write_text("{")
     desk.workspace.open(mug_session)
     failed = page.findChild(QLabel, "model_failed")
-    qtbot.waitUntil(failed.isVisible, timeout=10_000)
+    qtbot.waitUntil(failed.isVisible)
     assert "result.json" in failed.text()
 
 
@@ -187,13 +187,14 @@ def test_another_session_leaves_nothing_of_the_one_before(mug_page, desk, tmp_pa
     assert "appears here" in text(mug_page, "model_verdict")
 
 
+@pytest.mark.system
 def test_a_new_result_is_compared_with_the_last_one(mug_page, desk, qtbot):
     before = mug_page.model
     change(desk, reconstruction__voxel_m=0.006)
     primary(mug_page).click()
     assert not primary(mug_page).isEnabled()
     assert not desk.jobs.is_idle
-    qtbot.waitUntil(lambda: mug_page.view.modes.mode == "difference", timeout=60_000)
+    qtbot.waitUntil(lambda: mug_page.view.modes.mode == "difference")
     after = mug_page.model
     assert len(after.mesh.faces) < len(before.mesh.faces)
     facts = {fact.title: fact for fact in mug_page.side.facts.facts}
@@ -202,4 +203,4 @@ def test_a_new_result_is_compared_with_the_last_one(mug_page, desk, qtbot):
     assert 0.05 < mean_mm < 3
     assert f"{mean_mm:.2f} mm on average" in text(mug_page, "model_caption")
     record = json.loads((desk.workspace.folder / "reconstruction" / "record.json").read_text())
-    assert record["parameters"]["voxel_m"] == 0.006
+    assert record["parameters"]["reconstruction.voxel_m"] == 0.006

@@ -26,7 +26,7 @@ def page(desk, qtbot, hurried_cell):
     page.resize(1060, 640)
     page.show()
     desk.cell.choose(hurried_cell)
-    qtbot.waitUntil(lambda: desk.background.is_idle, timeout=10_000)
+    qtbot.waitUntil(lambda: desk.background.is_idle)
     return page
 
 
@@ -36,6 +36,6 @@ def open_session(page, qtbot):
 
     def open_(folder):
         page.desk.workspace.open(folder)
-        qtbot.waitUntil(lambda: page.desk.background.is_idle, timeout=10_000)
+        qtbot.waitUntil(lambda: page.desk.background.is_idle)
 
     return open_

@@ -24,7 +24,7 @@ def heading(page):
 
 
 def test_without_a_session_one_scans(page, qtbot):
-    assert page.course.step is Step.EMPTY
+    assert page.procedure.step is Step.EMPTY
     assert heading(page) == "No object yet"
     assert not page.side.hold_to_pour.isVisibleTo(page)
     assert wanted(page, qtbot) == "scan"
@@ -40,13 +40,13 @@ def test_a_scan_alone_is_to_be_imagined(page, qtbot, open_session, mug_session):
 
 def test_stale_pours_are_to_be_imagined_again(page, qtbot, open_session, mug_session):
     open_session(mug_session)
-    assert page.course.step is Step.CONNECT
+    assert page.procedure.step is Step.CONNECT
     workspace = page.desk.workspace
     workspace.edit(apply_settings(workspace.parameters, {"seed": 3}), "seed")
     assert heading(page) == "The pours are out of date"
     assert wanted(page, qtbot) == "imagination"
     workspace.undo_stack.undo()
-    assert page.course.step is Step.CONNECT
+    assert page.procedure.step is Step.CONNECT
 
 
 def test_into_a_block_nothing_is_poured(page, qtbot, open_session, block_session):
@@ -55,15 +55,24 @@ def test_into_a_block_nothing_is_poured(page, qtbot, open_session, block_session
     assert wanted(page, qtbot) == "imagination"
 
 
-def test_a_mesh_stands_in_no_cell(page, qtbot, open_session, tmp_path):
+def test_a_mesh_has_no_place_in_the_cell(page, qtbot, open_session, tmp_path):
     with (
         Session.create_or_open(tmp_path / "mesh") as session,
         session.writing("mesh", inputs={}, parameters={"source": "somewhere.obj"}) as folder,
     ):
         (folder / "mesh.ply").write_text("ply")
     open_session(tmp_path / "mesh")
-    assert heading(page) == "A mesh stands in no cell"
+    assert heading(page) == "An imported mesh has no place in the cell"
     assert wanted(page, qtbot) == "scan"
+
+
+def test_a_damaged_session_is_explained(page, open_session, mug_session):
+    path = mug_session / "containability" / "containability.json"
+    path.write_text("{".ljust(path.stat().st_size))
+    open_session(mug_session)
+    assert heading(page) == "The session cannot be read"
+    assert "containability.json" in page.findChild(QLabel, "start_text").text()
+    assert not page.side.primary.isVisibleTo(page)
 
 
 def test_the_cell_and_the_object_are_shown(page, open_session, mug_session):
@@ -76,8 +85,7 @@ def test_the_cell_and_the_object_are_shown(page, open_session, mug_session):
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_the_page_is_painted_in_both_themes(page, open_session, mug_session, theme, qapp):
-    from app.gui.palette import apply_theme
-    from app.gui.theme import THEMES
+    from app.gui.theme import THEMES, apply_theme
 
     open_session(mug_session)
     apply_theme(qapp, THEMES[theme])

@@ -14,12 +14,17 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox, QLabel, QPushButton
 
-from app.gui.pages.robot.check_panel import CheckPanel
+from app.gui.pages.robot.panels import CheckPanel
 from app.gui.pages.robot.steps import Step
+from core.imagination.amount.result import PlannedAmount
+from core.pipeline.session_view import SessionView
 from core.session.cups import Cup
 from core.session.pour_runs import pour_runs
-from hardware.cell.cell_file import CELL_FOLDER
-from hardware.simulation.ur_controller.addresses import CONTROL_PORT
+from hardware.cell.settings import CELL_FOLDER
+from hardware.simulation.ur_controller.identity import CONTROL_PORT
+from tests.awake import within
+
+pytestmark = pytest.mark.system
 
 pytest.importorskip("rtde_control")
 
@@ -30,13 +35,15 @@ CHECKS = ("check_cup", "check_area", "check_speed", "check_stop")
 def reach(page, qtbot):
     """Waits until a step is reached and nothing is under way."""
 
-    def reach_(step, timeout=120_000):
+    def reach_(step):
         def is_there():
             is_idle = page.desk.jobs.is_idle and page.desk.background.is_idle
-            course = page.course
-            assert course.step is step and is_idle, f"{course.step}: {course.failure} {course.stopped}"
+            procedure = page.procedure
+            assert procedure.step is step and is_idle, (
+                f"{procedure.step}: {procedure.failure} {procedure.stopped}"
+            )
 
-        qtbot.waitUntil(is_there, timeout=timeout)
+        qtbot.waitUntil(is_there)
 
     return reach_
 
@@ -53,7 +60,7 @@ def ready(page, open_session, mug_session, reach):
 def hold(qtbot, button):
     """Press a button until it is confirmed."""
     qtbot.mousePress(button, Qt.MouseButton.LeftButton)
-    with qtbot.waitSignal(button.confirmed, timeout=5000):
+    with qtbot.waitSignal(button.confirmed):
         pass
     qtbot.mouseRelease(button, Qt.MouseButton.LeftButton)
 
@@ -70,8 +77,7 @@ def pour_until(page, qtbot, reach, move):
     tick_all(page)
     hold(qtbot, page.side.hold_to_pour)
     with qtbot.waitSignal(
-        page.course.moved,
-        timeout=30_000,
+        page.procedure.moved,
         check_params_cb=lambda told: told.name == move and told.fraction > 0.2,
     ):
         pass
@@ -86,7 +92,7 @@ def test_with_a_real_arm_nothing_is_ticked_before_somebody_does(qtbot):
     qtbot.addWidget(panel)
     planned = SimpleNamespace(number=1, note="", plan=None, expires_s=time.monotonic() + 60)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.gui.pages.robot.check_panel.plan_facts", lambda _: [])
+        patch.setattr("app.gui.pages.robot.panels.plan_facts", lambda _: [])
         panel.show_plan(planned, Cup(1, 1, 60, None), is_rehearsal=False)
     boxes = [panel.findChild(QCheckBox, name) for name in CHECKS]
     assert not any(box.isChecked() for box in boxes)
@@ -104,12 +110,13 @@ def test_of_several_cups_the_next_is_named_and_an_emptied_object_begins_with_the
     run.mkdir(parents=True)
     events = [{"kind": "confirmed", "imagination": session.record("pouring").digest}, {"kind": "done"}]
     (run / "events.jsonl").write_text("".join(json.dumps(event) + "\n" for event in events))
-    monkeypatch.setattr("app.gui.pages.robot.course.imagined_cups", lambda _: (30, 30))
-    ready.course.changed.emit()
-    assert "Next comes cup 2 of 2, 30 candies in it" in text(ready, "start_text")
+    monkeypatch.setattr(PlannedAmount, "n_per_cup", (30, 30))
+    ready.desk.workspace.view = SessionView(session)
+    ready.procedure.changed.emit()
+    assert "Next is cup 2 of 2, 30 candies in it" in text(ready, "start_text")
     assert button.isVisibleTo(panel)
     button.click()
-    assert "Next comes" not in text(ready, "start_text")
+    assert "Next is" not in text(ready, "start_text")
     assert not button.isVisibleTo(panel)
     assert pour_runs(session.path)[0].was_emptied
 
@@ -120,45 +127,43 @@ def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
     side.primary.click()
     reach(Step.CHECK)
 
-    planned = page.course.planned
-    motion = page.course.motion
+    planned = page.procedure.planned
+    motion = page.procedure.motion
     assert page.view.timeline.duration_s == pytest.approx(planned.plan.duration_s)
     page.view.timeline.set_time(motion.begins_s[6] + 0.1)
-    assert text(page, "plan_now") == "pour: the cup turns about its rim and pours"
-    assert {"way", "pivot"} <= set(page.view.scene.layers())
-    free = f"{1000 * planned.plan.clearance_m:.0f} mm between {planned.plan.nearest[0]} and"
+    assert text(page, "plan_now") == "pour: the cup rotates about its rim and pours"
+    assert {"path", "pivot"} <= set(page.view.scene.layers())
+    free = f"{1000 * planned.plan.clearance_m:.0f} mm, {planned.plan.nearest[0]} to"
     assert any(free in label.text() for label in side.check.findChildren(QLabel))
 
     button = side.hold_to_pour
     assert button.isEnabled(), "nothing real moves"
-    assert "ticked already" in text(page, "rehearsal")
+    assert "already ticked" in text(page, "rehearsal")
     tick_all(page, is_ticked=False)
     assert not button.isEnabled()
     assert "Tick each point" in text(page, "hold_reason")
     tick_all(page)
     assert button.isEnabled()
-    page.course.planned = replace(planned, expires_s=0.0)
-    page._guide.look()
+    page.procedure.planned = replace(planned, expires_s=0.0)
+    page.update_actions()
     assert not button.isEnabled()
     assert "plan again" in text(page, "hold_reason")
-    page.course.planned = planned
-    page._guide.look()
+    page.procedure.planned = planned
+    page.update_actions()
 
     qtbot.mousePress(button, Qt.MouseButton.LeftButton)
     qtbot.wait(300)
     qtbot.mouseRelease(button, Qt.MouseButton.LeftButton)
     qtbot.wait(100)
-    assert page.course.step is Step.CHECK, "released too early"
+    assert page.procedure.step is Step.CHECK, "released too early"
     assert not pour_runs(mug_session)
 
     hold(qtbot, button)
-    assert page.course.step is Step.POUR
+    assert page.procedure.step is Step.POUR
     assert not button.isVisibleTo(page)
-    with qtbot.waitSignal(
-        page.course.moved, timeout=20_000, check_params_cb=lambda told: told.name == "pour"
-    ):
+    with qtbot.waitSignal(page.procedure.moved, check_params_cb=lambda told: told.name == "pour"):
         pass
-    assert text(page, "live_move") == "pour: the cup turns about its rim and pours"
+    assert text(page, "live_move") == "pour: the cup rotates about its rim and pours"
     assert "Move 7 of 14" in text(page, "live_left")
     assert not page.view.timeline.isEnabled()
     reach(Step.OUTCOME)
@@ -176,7 +181,7 @@ def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
     assert [row.values[2] for row in side.runs.table.rows] == ["poured"]
 
     side.runs.chosen.emit(run.folder)
-    assert page.course.step is Step.OUTCOME
+    assert page.procedure.step is Step.OUTCOME
     assert "As it was entered" in text(page, "outcome_how")
     tick_all(page, is_ticked=False)
     side.again.click()
@@ -187,7 +192,7 @@ def test_from_the_plan_to_the_saved_outcome(ready, qtbot, reach, mug_session):
 def test_after_a_stop_the_guide_leads_back_to_a_new_plan(ready, qtbot, reach, mug_session):
     page, side = ready, ready.side
     pour_until(page, qtbot, reach, "carry")
-    with qtbot.waitSignal(page.desk.arm.stopped, timeout=3000) as stopped:
+    with qtbot.waitSignal(page.desk.arm.stopped) as stopped:
         page.desk.arm.stop()
     print(f"STOP was taken after {1000 * stopped.args[0].seconds:.1f} ms")
     assert stopped.args[0].seconds < 0.1
@@ -198,17 +203,17 @@ def test_after_a_stop_the_guide_leads_back_to_a_new_plan(ready, qtbot, reach, mu
     joints_rad = page.desk.arm.status.state.joints_rad.copy()
 
     side.primary.click()
-    reach(Step.WAY_BACK)
+    reach(Step.PLAN_BACK_OFF)
     assert abs(page.desk.arm.status.state.joints_rad - joints_rad).max() < 1e-3, "it has not moved"
-    assert side.primary.text() == "Show the way back"
+    assert side.primary.text() == "Plan the return"
     side.primary.click()
-    reach(Step.BACK)
-    assert [move.name for move in page.course.motion.moves][-1] == "home"
+    reach(Step.CHECK_BACK_OFF)
+    assert [move.name for move in page.procedure.motion.moves][-1] == "home"
     assert page.view.timeline.duration_s > 1
     hold(qtbot, side.hold_to_back_off)
-    assert page.course.step is Step.BACKING
+    assert page.procedure.step is Step.BACK_OFF
     reach(Step.PLAN)
-    assert "See that the cup stands at its station" in text(page, "start_note")
+    assert "Check that the cup stands on its station" in text(page, "start_note")
     assert [row.values[2] for row in side.runs.table.rows] == ["backed off", "stopped"]
     side.primary.click()
     reach(Step.CHECK)
@@ -219,7 +224,8 @@ def test_a_killed_process_is_told_and_connecting_again_works(ready, qtbot, reach
     pour_until(page, qtbot, reach, "lay")
     os.kill(page.desk.arm_host.pid, signal.SIGKILL)
     reach(Step.CONNECT)
-    qtbot.waitUntil(lambda: "ended unexpectedly" in text(page, "start_note"), timeout=2000)
+    with within(2.0):
+        qtbot.waitUntil(lambda: "ended unexpectedly" in text(page, "start_note"))
     assert not page.side.state.isVisibleTo(page)
     assert "Not connected" in text(page, "arm_caption")
     page.side.primary.click()
@@ -229,16 +235,16 @@ def test_a_killed_process_is_told_and_connecting_again_works(ready, qtbot, reach
     assert "ended while the arm moved" in run.sentence
 
 
-def test_where_there_is_no_way_back_one_connects_anew(ready, qtbot, reach):
+def test_where_there_is_no_way_back_one_reconnects(ready, qtbot, reach):
     page, side = ready, ready.side
     pour_until(page, qtbot, reach, "to the cup")
     address = page.desk.arm.connected.stop_address
     with socket.create_connection((address, CONTROL_PORT), 5) as controller:
         controller.sendall(b"kill\n")
     reach(Step.STOPPED)
-    assert page.course.stopped
+    assert page.procedure.stopped
     side.primary.click()
-    qtbot.waitUntil(lambda: bool(page.course.failure), timeout=20_000)
+    qtbot.waitUntil(lambda: bool(page.procedure.failure))
     link = side.findChild(object, "by_hand")
     assert link.isVisibleTo(page)
     link.click()
@@ -266,12 +272,12 @@ def test_at_rest_stop_gripper_and_other_cells(ready, qtbot, reach, cell_of_nobod
     button = side.findChild(object, "hold_gripper")
     assert button.text() == "Hold to close the gripper"
     hold(qtbot, button)
-    qtbot.waitUntil(lambda: button.text() == "Hold to open the gripper", timeout=5000)
+    qtbot.waitUntil(lambda: button.text() == "Hold to open the gripper")
     reach(Step.PLAN)
-    qtbot.waitUntil(lambda: "The gripper is closed" in text(page, "start_note"), timeout=3000)
+    qtbot.waitUntil(lambda: "The gripper is closed" in text(page, "start_note"))
     assert not side.primary.isEnabled()
     hold(qtbot, button)
-    qtbot.waitUntil(lambda: text(page, "start_note") == "", timeout=5000)
+    qtbot.waitUntil(lambda: text(page, "start_note") == "")
     reach(Step.PLAN)
 
     page.desk.cell.choose(None)

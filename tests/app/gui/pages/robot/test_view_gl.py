@@ -7,8 +7,9 @@ import pytest
 
 from app.gui.pages.robot.loading import load_cell
 from app.gui.pages.robot.motion import ShownMotion
-from app.gui.pages.robot.view_part import ArmView
-from core.motion.pour.plan import MovePhase, PlannedMove
+from app.gui.pages.robot.view import ArmView
+from app.jobs.arm_events import PlannedBackOff
+from core.motion.pour.plan import MovePhase, PlannedMove, Segment
 from core.motion.trajectory import JointTrajectory
 from core.parameters import Parameters
 from hardware.cell import read_cell
@@ -34,11 +35,11 @@ def view(qtbot, cell):
 
 def a_motion(cell, holds_cup):
     """One move, with the cup in the hand or without."""
-    there = cell.home_rad + np.array([0.8, -0.2, -0.3, 0.2, 0.0, 0.3])
-    way = JointTrajectory(np.array([0.0, 2.0]), np.array([cell.home_rad, there]))
-    move = PlannedMove("carry", MovePhase.CARRY, way, holds_cup, None)
+    there = cell.model.home_rad + np.array([0.8, -0.2, -0.3, 0.2, 0.0, 0.3])
+    way = JointTrajectory(np.array([0.0, 2.0]), np.array([cell.model.home_rad, there]))
+    move = PlannedMove(Segment.CARRY, MovePhase.CARRY, way, holds_cup, None)
     line_m = np.array([[-0.5, 0.1, 0.2], [-0.2, -0.3, 0.4]])
-    return ShownMotion([move], np.eye(4), line_m, np.array([-0.05, -0.3, 0.2]))
+    return ShownMotion(PlannedBackOff(1, (move,), np.eye(4), line_m))
 
 
 def picture(view, qtbot):
@@ -55,12 +56,12 @@ def share_changed(before, after):
 def test_the_arm_is_drawn_where_it_is(view, qtbot, cell):
     at_home = picture(view, qtbot)
     assert at_home.std() > 10, "there is something"
-    view.show_arm(cell.home_rad + np.array([1.0, 0, 0, 0, 0, 0]), holds_cup=False)
+    view.show_arm(cell.model.home_rad + np.array([1.0, 0, 0, 0, 0, 0]), holds_cup=False)
     assert share_changed(at_home, picture(view, qtbot)) > 0.01
 
 
 def test_the_plan_is_a_ghost_that_follows_the_time_line(view, qtbot, cell):
-    view.show_arm(cell.home_rad, holds_cup=False)
+    view.show_arm(cell.model.home_rad, holds_cup=False)
     alone = picture(view, qtbot)
     view.show_motion(a_motion(cell, holds_cup=True))
     view.timeline.set_time(2.0)
@@ -73,7 +74,7 @@ def test_the_plan_is_a_ghost_that_follows_the_time_line(view, qtbot, cell):
 
 
 def test_a_cup_that_nobody_knows_of_is_not_drawn(view, qtbot, cell):
-    view.show_arm(cell.home_rad, holds_cup=False)
+    view.show_arm(cell.model.home_rad, holds_cup=False)
     standing = picture(view, qtbot)
-    view.show_arm(cell.home_rad, holds_cup=None)
+    view.show_arm(cell.model.home_rad, holds_cup=None)
     assert share_changed(standing, picture(view, qtbot)) > 0.0005

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 N_VIEWS = 5
-JOB_MS = 60_000
 
 
 @pytest.fixture(scope="session")
@@ -46,8 +45,8 @@ def make_page(qtbot, desk):
 
 def settle(qtbot, desk, page):
     """Wait until nothing is under way and the page knows what the session holds."""
-    qtbot.waitUntil(lambda: desk.jobs.is_idle and desk.background.is_idle, timeout=JOB_MS)
-    qtbot.waitUntil(lambda: page._contents is not None and page.side.choice._combo.count() > 2)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle and desk.background.is_idle)
+    qtbot.waitUntil(lambda: page.content is not None and page.side.choice._combo.count() > 2)
 
 
 @pytest.fixture

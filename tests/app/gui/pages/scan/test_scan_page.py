@@ -8,8 +8,8 @@ import shutil
 import pytest
 from PySide6.QtWidgets import QCheckBox, QComboBox, QListView
 
-from app.jobs.arm_news import ArmConnected, ArmGone
-from app.scanning import IN_PROGRESS
+from app.jobs.arm_events import ArmConnected, ArmDisconnected
+from app.library.session_folder import UNFINISHED_SCAN
 from core.resources import RESOURCES
 from hardware.cell import read_cell
 from tests.app.gui.pages.scan.conftest import N_VIEWS, settle
@@ -23,7 +23,7 @@ def opened(make_page, desk, folder):
 
 def test_an_empty_page_says_what_to_do(small_cell_page):
     page = small_cell_page
-    assert headline(page) == "Nothing is scanned yet."
+    assert headline(page) == "Nothing has been scanned yet."
     assert "Press “Scan the mug”: the arm takes 5 views" in details(page)
     assert primary(page).text() == "Scan the mug"
     assert primary(page).isEnabled()
@@ -63,7 +63,7 @@ def test_another_object_begins_a_session_of_its_own(qtbot, desk, make_page, mug_
     page = opened(make_page, desk, mug_session)
     page.side.choice.choose("bowl")
     assert primary(page).text() == "Scan the bowl"
-    assert "begins in a new session" in text(page, "remark")
+    assert "starts in a new session" in text(page, "remark")
     assert not button(page, "take_again").isVisible()
     page.side.choice.choose("mug")
     assert primary(page).text() == "Scan again"
@@ -72,7 +72,7 @@ def test_another_object_begins_a_session_of_its_own(qtbot, desk, make_page, mug_
 
 def interrupt(session, n_taken):
     """Leave of a finished scan what a program killed after some views leaves."""
-    folder = session / IN_PROGRESS
+    folder = session / UNFINISHED_SCAN
     shutil.move(session / "scan", folder)
     (folder / "record.json").unlink()
     table = json.loads((folder / "views.json").read_text())
@@ -83,17 +83,17 @@ def interrupt(session, n_taken):
     (folder / "views.json").write_text(json.dumps(table))
 
 
-def test_an_interrupted_scan_can_be_continued_or_started_anew(qtbot, desk, make_page, mug_session):
+def test_an_interrupted_scan_can_be_continued_or_started_over(qtbot, desk, make_page, mug_session):
     interrupt(mug_session, 11)
     page = opened(make_page, desk, mug_session)
-    assert headline(page) == "A scan was interrupted: 11 of 24 views are kept."
+    assert headline(page) == "The scan was interrupted: 11 of 24 views are stored."
     assert states(page) == ["taken"] * 11 + ["pending"] * 13
     assert primary(page).text() == "Continue scan"
-    assert button(page, "start_anew").isVisible()
+    assert button(page, "start_over").isVisible()
     page.side.choice.choose("bowl")
     assert "They show the object “Mug”" in details(page)
     assert primary(page).text() == "Scan the bowl"
-    assert not button(page, "start_anew").isVisible()
+    assert not button(page, "start_over").isVisible()
 
 
 def test_views_of_another_seed_are_not_mixed_in(qtbot, desk, make_page, mug_session):
@@ -126,7 +126,7 @@ def test_a_poor_scan_says_why_and_offers_its_poor_views(desk, make_page, mug_ses
     assert details(page) == "View 5 sees the table 12 mm above its place.\nNo view saw 14 %."
     assert states(page)[4] == "poor"
     assert states(page)[9] == "failed"
-    assert button(page, "verdict_action").text() == "Take 2 poor again"
+    assert button(page, "verdict_action").text() == "Retake 2 poor views"
     pick_thumbnail(page, 4)
     assert text(page, "caption") == "View 5: taken, but poor"
     assert text(page, "view_said") == "It sees the table 12 mm above its place."
@@ -135,7 +135,7 @@ def test_a_poor_scan_says_why_and_offers_its_poor_views(desk, make_page, mug_ses
 def test_what_stayed_hidden_can_be_looked_for(desk, make_page, mug_session):
     path = mug_session / "quality" / "quality.json"
     cavity = json.loads(path.read_text())["cavity"] | {"area_m2": 0.01, "depth_m": 0.04, "width_m": 0.06}
-    reasons = ["usable: it was not seen below 40 mm; look again with --adaptive."]
+    reasons = ["usable: it was not seen below 40 mm; look again from further views."]
     change_quality(mug_session, verdict="usable", reasons=reasons, cavity=cavity)
     page = opened(make_page, desk, mug_session)
     assert button(page, "verdict_action").text() == "Find views that show it"
@@ -148,15 +148,15 @@ def test_changed_parameters_make_the_verdict_stale(qtbot, desk, make_page, mug_s
     changed = desk.workspace.parameters.model_copy(update={"reconstruction": reconstruction})
     desk.workspace.edit(changed, "voxel")
     settle(qtbot, desk, page)
-    assert details(page).startswith("Views or parameters were changed since")
-    assert button(page, "verdict_action").text() == "Judge the scan"
+    assert details(page).startswith("Views or parameters have changed since")
+    assert button(page, "verdict_action").text() == "Check the scan"
 
 
 def test_a_session_that_is_closed_leaves_nothing_behind(qtbot, desk, make_page, mug_session):
     page = opened(make_page, desk, mug_session)
     desk.workspace.close()
     settle(qtbot, desk, page)
-    assert headline(page) == "Nothing is scanned yet."
+    assert headline(page) == "Nothing has been scanned yet."
     assert states(page) == ["pending"] * 24
     assert "object" not in page.left.view.scene.layers()
     assert text(page, "caption") == "What the camera sees"
@@ -172,7 +172,7 @@ def test_a_real_cell_asks_for_a_clear_area(make_page, real_cell, sessions):
     assert "Put the object on the platform" in text(page, "place_object")
     assert not page.findChild(QComboBox, "object").isVisible()
     assert not primary(page).isEnabled()
-    assert "See that the area is clear" in details(page)
+    assert "Make sure the area is clear" in details(page)
     page.findChild(QCheckBox, "area_clear").setChecked(True)
     assert primary(page).isEnabled()
     assert primary(page).text() == "Scan"
@@ -181,18 +181,18 @@ def test_a_real_cell_asks_for_a_clear_area(make_page, real_cell, sessions):
 def test_an_arm_that_is_connected_for_pouring_cannot_scan(desk, make_page, real_cell, sessions):
     page = make_page(real_cell)
     page.findChild(QCheckBox, "area_clear").setChecked(True)
-    desk.arm.hear(ArmConnected("UR5 at 192.168.0.10", None, is_simulated=False))
+    desk.arm.handle(ArmConnected("UR5 at 192.168.0.10", None, is_simulated=False))
     assert "disconnect it on the Robot page" in text(page, "obstacle")
     assert not primary(page).isEnabled()
-    desk.arm.hear(ArmGone())
+    desk.arm.handle(ArmDisconnected())
     assert text(page, "obstacle") == ""
     assert primary(page).isEnabled()
 
 
-def test_a_damaged_session_is_told_of(qtbot, desk, make_page, mug_session):
+def test_a_damaged_session_is_reported(qtbot, desk, make_page, mug_session):
     (mug_session / "quality" / "quality.json").write_text("{")
     told = []
-    desk.told.connect(told.append)
+    desk.message.connect(told.append)
     desk.workspace.open(mug_session)
     from app.gui.pages.scan.page import ScanPage
 

@@ -10,11 +10,13 @@ from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.jobs.arm_news import ArmStatus
+from app.jobs.arm_events import ArmStatus
 from hardware.simulation.objects import builtin_object
-from tests.app.gui.pages.scan.conftest import JOB_MS, N_VIEWS, settle
+from tests.app.gui.pages.scan.conftest import N_VIEWS, settle
 from tests.app.gui.pages.scan.reading import button, details, headline, pick_thumbnail, primary, states, text
 from tests.app.sessions import quick_parameters
+
+pytestmark = pytest.mark.system
 
 
 def n_taken(page):
@@ -24,7 +26,7 @@ def n_taken(page):
 def test_a_scan_is_watched_killed_and_tried_again(qtbot, desk, small_cell_page, sessions):
     page = small_cell_page
     news, failed = [], []
-    desk.jobs.news.connect(news.append)
+    desk.jobs.event_received.connect(news.append)
     desk.jobs.failed.connect(lambda job, what: failed.append((job, what)))
     qtbot.mouseClick(primary(page), Qt.MouseButton.LeftButton)
     [folder] = sessions.iterdir()
@@ -33,7 +35,7 @@ def test_a_scan_is_watched_killed_and_tried_again(qtbot, desk, small_cell_page, 
     assert not primary(page).isEnabled()
     desk.workspace.edit(quick_parameters(), "quick")
 
-    qtbot.waitUntil(lambda: n_taken(page) >= 1, timeout=JOB_MS)
+    qtbot.waitUntil(lambda: n_taken(page) >= 1)
     assert headline(page) == f"Taking view {n_taken(page) + 1} of {N_VIEWS}."
     assert primary(page).text() == "Pause"
     assert any(isinstance(one, ArmStatus) for one in news)
@@ -48,14 +50,14 @@ def test_a_scan_is_watched_killed_and_tried_again(qtbot, desk, small_cell_page, 
     assert n_taken(page) == held < N_VIEWS
 
     os.kill(desk.scan_host.pid, signal.SIGKILL)
-    qtbot.waitUntil(lambda: bool(failed), timeout=JOB_MS)
+    qtbot.waitUntil(lambda: bool(failed))
     settle(qtbot, desk, page)
-    assert headline(page) == f"A scan was interrupted: {held} of {N_VIEWS} views are kept."
+    assert headline(page) == f"The scan was interrupted: {held} of {N_VIEWS} views are stored."
     assert primary(page).text() == "Continue scan"
 
     failed[0][0].start_again()
-    qtbot.waitUntil(lambda: n_taken(page) == N_VIEWS, timeout=JOB_MS)
-    qtbot.waitUntil(lambda: "scan:" in headline(page) or "Scan again:" in headline(page), timeout=JOB_MS)
+    qtbot.waitUntil(lambda: n_taken(page) == N_VIEWS)
+    qtbot.waitUntil(lambda: "scan:" in headline(page) or "Scan again:" in headline(page))
     settle(qtbot, desk, page)
     assert desk.workspace.is_fresh("quality")
     assert desk.workspace.folder == folder
@@ -74,9 +76,9 @@ def test_a_view_is_taken_again_and_judged_anew(qtbot, desk, make_page, mug_sessi
     pick_thumbnail(page, 2)
     qtbot.mouseClick(button(page, "take_again"), Qt.MouseButton.LeftButton)
     assert not button(page, "take_again").isEnabled()
-    qtbot.waitUntil(lambda: len(finished) == 2, timeout=JOB_MS)
+    qtbot.waitUntil(lambda: len(finished) == 2)
     settle(qtbot, desk, page)
-    assert finished == ["Scan", "Judge the scan"]
+    assert finished == ["Scan", "Check the scan"]
     assert image.stat().st_mtime_ns != written_ns
     assert headline(page).startswith("Good scan")
     assert text(page, "caption") == "View 3: taken"
@@ -114,11 +116,11 @@ def test_a_dropped_mesh_is_imported_into_a_session_of_its_own(
 ):
     page = small_cell_page
     drop(page, mesh_file)
-    qtbot.waitUntil(lambda: desk.workspace.has("mesh"), timeout=JOB_MS)
+    qtbot.waitUntil(lambda: desk.workspace.has("mesh"))
     settle(qtbot, desk, page)
     assert [folder.name[11:] for folder in sessions.iterdir()] == ["my-cup"]
-    assert headline(page) == "An imported mesh: it stands in no cell."
-    assert details(page) == "It is 114 x 80 x 97 mm large."
+    assert headline(page) == "An imported mesh: its place in the cell is not known."
+    assert details(page) == "Size: 114 x 80 x 97 mm."
     assert page.left.view.scene.layers() == ("object", "views")
     assert primary(page).text() == "Scan the mug"
     assert "new session" in text(page, "remark")
@@ -129,7 +131,7 @@ def test_a_dropped_folder_is_imported(qtbot, desk, small_cell_page, sessions, sc
     failed = []
     desk.jobs.failed.connect(lambda _, what: failed.append(what.sentence))
     drop(page, scan_folder)
-    qtbot.waitUntil(lambda: bool(failed) or desk.workspace.is_fresh("quality"), timeout=JOB_MS)
+    qtbot.waitUntil(lambda: bool(failed) or desk.workspace.is_fresh("quality"))
     settle(qtbot, desk, page)
     assert states(page)[:4] == ["taken"] * 4
     assert headline(page).startswith("Scan again: "), failed
@@ -142,7 +144,7 @@ def test_a_dropped_folder_is_imported(qtbot, desk, small_cell_page, sessions, sc
 )
 def test_a_wrong_drop_gets_a_sentence(desk, small_cell_page, sessions, tmp_path, names, said):
     told = []
-    desk.told.connect(told.append)
+    desk.message.connect(told.append)
     paths = [tmp_path / name for name in names]
     for path in paths:
         path.write_text("nothing")
@@ -173,7 +175,7 @@ def test_a_page_that_is_asked_to_scan_before_it_is_ready_does_so_then(qtbot, des
     assert desk.jobs.is_idle
     desk.cell.settings = few_views
     desk.cell.changed.emit()
-    qtbot.waitUntil(lambda: not desk.jobs.is_idle, timeout=JOB_MS)
+    qtbot.waitUntil(lambda: not desk.jobs.is_idle)
     assert desk.workspace.folder.name.endswith("-bowl")
     desk.jobs.cancel()
-    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=JOB_MS)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)

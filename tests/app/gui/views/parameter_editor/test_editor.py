@@ -6,10 +6,9 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QCheckBox, QComboBox, QLabel, QLineEdit
 
-from app.gui.views.parameter_editor import ParameterEditor
+from app.gui.views.parameter_editor.editor import ParameterEditor
 from app.gui.views.parameter_editor.inputs import ChoiceInput, NumberInput, PointInput
-from app.gui.views.parameter_editor.model import ROW_ROLE, VALUE_COLUMN, RowFacts
-from app.gui.views.parameter_editor.view import ParameterView
+from app.gui.views.parameter_editor.tree import RESET, VALUE, ParameterTree
 from core.parameters import Parameters, apply_settings, load_preset
 
 LEFT = Qt.MouseButton.LeftButton
@@ -27,31 +26,19 @@ def editor(qtbot):
 
 
 def view_of(editor):
-    return editor.findChild(ParameterView)
+    return editor.findChild(ParameterTree)
 
 
 def rows(editor):
-    """`{dotted name: index of its value}` of what is shown."""
-    model = view_of(editor).model()
-    found = {}
-
-    def walk(parent):
-        for row in range(model.rowCount(parent)):
-            index = model.index(row, 0, parent)
-            facts = index.data(ROW_ROLE)
-            if isinstance(facts, RowFacts):
-                found[facts.name] = index.siblingAtColumn(VALUE_COLUMN)
-            walk(index)
-
-    walk(view_of(editor).rootIndex())
-    return found
+    """`{dotted name: its row}` of what is shown."""
+    tree = view_of(editor)
+    return {name: tree.row(name) for name in tree.names if not tree.row(name).isHidden()}
 
 
-def click(qtbot, editor, name, part="value"):
-    view, index = view_of(editor), rows(editor)[name]
-    layout = view.parameter_delegate.layout_of(index.data(ROW_ROLE), view.visualRect(index))
-    at = getattr(layout, part).center().toPoint()
-    qtbot.mouseClick(view.viewport(), LEFT, pos=at)
+def click(qtbot, editor, name, column=VALUE):
+    tree = view_of(editor)
+    index = tree.indexFromItem(rows(editor)[name], column)
+    qtbot.mouseClick(tree.viewport(), LEFT, pos=tree.visualRect(index).center())
     qtbot.wait(10)
 
 
@@ -74,7 +61,8 @@ def test_typing_a_number_in_mm_sends_the_new_parameters(qtbot, editor):
         type_number(qtbot, editor, VOXEL, "4")
     assert heard.args[0] == apply_settings(Parameters(), {VOXEL: 0.004})
     assert editor.parameters == heard.args[0]
-    assert rows(editor)[VOXEL].data() == "4 mm"
+    assert rows(editor)[VOXEL].text(VALUE) == "4 mm"
+    assert "preset: 2 mm" in rows(editor)[VOXEL].text(0)
     assert editor.findChild(QLabel, "parameter_count").text() == "1 differs from preset"
 
 
@@ -87,14 +75,16 @@ def test_opening_and_leaving_changes_nothing(qtbot, editor):
 
 
 def test_a_refused_value_is_explained_under_the_row_and_the_old_one_returns(qtbot, editor):
-    low = view_of(editor).visualRect(rows(editor)[VOXEL]).height()
     with qtbot.assertNotEmitted(editor.edited):
         type_number(qtbot, editor, VOXEL, "500")
     assert editor.error(VOXEL) == "500 mm is not possible; allowed is 1 to 20 mm."
-    assert rows(editor)[VOXEL].data() == "2 mm"
-    assert view_of(editor).visualRect(rows(editor)[VOXEL]).height() > low + 10
+    row = rows(editor)[VOXEL]
+    assert row.text(VALUE) == "2 mm"
+    assert row.child(0).text(0) == editor.error(VOXEL)
+    assert view_of(editor).visualItemRect(row.child(0)).height() > 10
     type_number(qtbot, editor, VOXEL, "3,5")
     assert editor.error(VOXEL) == ""
+    assert rows(editor)[VOXEL].childCount() == 0
     assert editor.parameters.reconstruction.voxel_m == 0.0035
 
 
@@ -117,7 +107,7 @@ def test_yes_or_no_is_toggled_by_a_click_and_by_space(qtbot, editor):
     assert heard.args[0].reconstruction.refine_poses is True
 
 
-def test_automatic_is_left_by_typing_and_ticked_again(qtbot, editor):
+def test_automatic_is_left_by_typing_and_comes_back_when_the_line_is_emptied(qtbot, editor):
     name = "reconstruction.truncation_m"
     spin = open_input(qtbot, editor, name, NumberInput)
     assert spin.text() == "automatic"
@@ -127,7 +117,7 @@ def test_automatic_is_left_by_typing_and_ticked_again(qtbot, editor):
         type_number(qtbot, editor, name, "20")
     assert heard.args[0].reconstruction.truncation_m == 0.02
     with qtbot.waitSignal(editor.edited) as heard:
-        click(qtbot, editor, name, "automatic")
+        type_number(qtbot, editor, name, "")
     assert heard.args[0].reconstruction.truncation_m is None
 
 
@@ -148,9 +138,9 @@ def test_one_parameter_is_reset_by_click_and_by_key(qtbot, editor):
     changed = apply_settings(Parameters(), {VOXEL: 0.004, "collision.max_faces": 500})
     editor.set_parameters(changed, "default", Parameters())
     with qtbot.waitSignal(editor.edited) as heard:
-        click(qtbot, editor, VOXEL, "reset")
+        click(qtbot, editor, VOXEL, RESET)
     assert heard.args[0] == apply_settings(Parameters(), {"collision.max_faces": 500})
-    view_of(editor).setCurrentIndex(rows(editor)["collision.max_faces"])
+    view_of(editor).setCurrentItem(rows(editor)["collision.max_faces"])
     with qtbot.waitSignal(editor.edited) as heard:
         qtbot.keyClick(view_of(editor), Qt.Key.Key_Delete)
     assert heard.args[0] == Parameters()
@@ -160,7 +150,7 @@ def test_parameters_from_outside_are_shown_without_a_signal(qtbot, editor):
     paper = load_preset("paper")
     with qtbot.assertNotEmitted(editor.edited):
         editor.set_parameters(paper, "default", Parameters())
-    assert rows(editor)[VOXEL].data() == "4 mm"
+    assert rows(editor)[VOXEL].text(VALUE) == "4 mm"
     assert editor.n_different == 5  # of the paper's, those in the two groups shown
 
 
@@ -222,7 +212,7 @@ def test_arrow_steps_stay_within_the_range(qtbot, editor):
 def test_reveal_finds_a_parameter_whatever_was_filtered(qtbot, editor):
     editor.findChild(QLineEdit, "parameter_filter").setText("hulls")
     editor.reveal(VOXEL)
-    assert view_of(editor).currentIndex().data(ROW_ROLE).name == VOXEL
+    assert view_of(editor).currentItem() is rows(editor)[VOXEL]
 
 
 def test_the_wheel_over_a_row_changes_nothing(qtbot, editor):

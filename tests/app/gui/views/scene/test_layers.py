@@ -5,15 +5,18 @@ import pytest
 
 from app.gui.theme import LIGHT
 from app.gui.views.scene import Frustum
-from app.gui.views.scene.arm import Arm
 from app.gui.views.scene.camera import Camera
-from app.gui.views.scene.candies import Candies
-from app.gui.views.scene.crop_box import CropBox
-from app.gui.views.scene.frusta import frusta_layer
-from app.gui.views.scene.layers import label_layer, line_layer, points_layer
+from app.gui.views.scene.layers import (
+    Arm,
+    Candies,
+    CropBox,
+    frusta_layer,
+    label_layer,
+    line_layer,
+    points_layer,
+)
 from core.geometry import look_at, make_pose
-from core.motion.arm_models import UR5
-from core.motion.arm_shape import Capsule
+from core.motion.arm_models import UR5, Capsule
 from core.motion.kinematics import flange_pose
 
 SIZE = (900, 600)
@@ -79,11 +82,11 @@ def looks(*states, selected=None):
     return sum(len(part.vertices_m) for part in lines), sum(part.n_triangles for part in surfaces)
 
 
-def test_the_state_of_a_view_is_told_by_its_shape():
+def test_the_state_of_a_view_is_shown_by_its_shape():
     assert len({looks(state) for state in STATES}) == len(STATES)
 
 
-def test_the_state_of_a_view_is_told_by_its_colour():
+def test_the_state_of_a_view_is_shown_by_its_colour():
     colors = [tuple(frusta_layer(frusta(state)).parts[0].paint.colors(LIGHT)[0]) for state in STATES]
     assert len(set(colors)) == len(STATES)
 
@@ -94,7 +97,7 @@ def test_a_selected_view_has_thicker_lines():
     assert widths == sorted(widths) and widths[0] < widths[1]
 
 
-def test_a_click_tells_which_view():
+def test_a_click_picks_a_view():
     layer = frusta_layer(frusta(*STATES))
     camera = Camera(center_m=(0.5, 0.2, 0.35), distance_m=1).looking_from("top")
     assert layer.target.hit(camera.ray((450, 300), SIZE))[1] == 2

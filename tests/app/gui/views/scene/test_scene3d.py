@@ -103,12 +103,12 @@ def test_the_empty_text_is_there_until_there_is_a_layer(scene):
 
 def test_a_click_picks_the_nearest_layer(qtbot, box_scene):
     box_scene.set_mesh("floor", *box_mesh((-1, -1, -0.1), (1, 1, 0)))
-    with qtbot.waitSignal(box_scene.picked) as told:
+    with qtbot.waitSignal(box_scene.picked) as emitted:
         click(box_scene, (400, 300))
-    assert told.args[0] == "box"
-    with qtbot.waitSignal(box_scene.picked) as told:
+    assert emitted.args[0] == "box"
+    with qtbot.waitSignal(box_scene.picked) as emitted:
         click(box_scene, (790, 10))
-    assert told.args[0] == "floor"
+    assert emitted.args[0] == "floor"
 
 
 def test_hidden_layers_are_not_picked(qtbot, box_scene):
@@ -134,9 +134,9 @@ def test_a_view_of_the_camera_is_picked_by_its_index(qtbot, scene):
     poses = [look_at((0.3 * k, 0, 0.4), (0.3 * k, 0, 0)) for k in range(3)]
     scene.set_frusta("views", [Frustum(f"frame-{k}", pose) for k, pose in enumerate(poses)])
     scene.look_from("top")
-    with qtbot.waitSignal(scene.picked) as told:
+    with qtbot.waitSignal(scene.picked) as emitted:
         click(scene, (400, 300))
-    assert told.args == ["views", 1]
+    assert emitted.args == ["views", 1]
 
 
 def test_a_candy_is_picked_by_its_index(qtbot, scene):
@@ -144,18 +144,18 @@ def test_a_candy_is_picked_by_its_index(qtbot, scene):
     scene.set_candy_positions("candies", [(0, 0, 0), (0, 0, 0.1)])
     scene.fit("candies")
     scene.look_from("top")
-    with qtbot.waitSignal(scene.picked) as told:
+    with qtbot.waitSignal(scene.picked) as emitted:
         click(scene, (400, 300))
-    assert told.args == ["candies", 1]
+    assert emitted.args == ["candies", 1]
 
 
 def test_dragging_turns_and_does_not_pick(qtbot, box_scene):
     box_scene.look_from("iso")
     before = box_scene.azimuth_deg
-    with qtbot.assertNotEmitted(box_scene.picked), qtbot.waitSignal(box_scene.azimuth_changed) as told:
+    with qtbot.assertNotEmitted(box_scene.picked), qtbot.waitSignal(box_scene.azimuth_changed) as emitted:
         drag(box_scene, (400, 300), (500, 300))
     assert box_scene.azimuth_deg < before
-    assert told.args[0] != before
+    assert emitted.args[0] != before
 
 
 @pytest.mark.parametrize(
@@ -204,16 +204,16 @@ def test_dragging_a_handle_edits_the_box_and_does_not_turn(qtbot, scene):
     scene.look_from("front")
     before = camera(scene)
     start, end = before.project(np.array([[0.1, 0, 0.1], [0.13, 0, 0.1]]), (800, 600))
-    with qtbot.waitSignal(scene.box_edited) as told:
+    with qtbot.waitSignal(scene.box_edited) as emitted:
         drag(scene, tuple(start), tuple(end))
-    name, low, high = told.args
+    name, low, high = emitted.args
     assert name == "crop"
     assert low == pytest.approx((-0.1, -0.1, 0))
     assert high == pytest.approx((0.13, 0.1, 0.2))
     assert camera(scene) == before
 
 
-def test_the_cursor_tells_of_a_handle(scene):
+def test_the_cursor_shows_a_handle(scene):
     scene.set_box("crop", (-0.1, -0.1, 0), (0.1, 0.1, 0.2), has_handles=True)
     scene.look_from("front")
     at = camera(scene).project(np.array([[0.1, 0, 0.1]]), (800, 600))[0]
@@ -234,7 +234,7 @@ def test_a_handle_may_vanish_while_it_is_dragged(qtbot, scene):
         send(scene, QEvent.Type.MouseButtonRelease, (600, 300), LEFT, NONE)
 
 
-def test_layers_come_into_view_until_somebody_chose_what_to_see(scene):
+def test_layers_come_into_view_until_the_user_chose_what_to_see(scene):
     scene.set_points("near", [(0, 0, 0), (0.1, 0, 0)])
     first = camera(scene).distance_m
     scene.set_points("far", [(2, 0, 0)])
@@ -258,7 +258,7 @@ def test_what_was_fitted_stays_in_view_when_the_size_changes_until_the_user_move
 
 
 def test_layers_can_be_fitted_before_they_come(scene):
-    scene.set_points("room", [(-5, 0, 0), (5, 0, 0)])
+    scene.set_points("far", [(-5, 0, 0), (5, 0, 0)])
     before = camera(scene).distance_m
     scene.fit("object")
     scene.set_mesh("object", *box_mesh((0, 0, 0), (0.1, 0.1, 0.1)))

@@ -11,8 +11,7 @@ from PySide6.QtGui import QColor, QImage
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QMainWindow, QStackedWidget
 
-from app.gui.palette import palette_of
-from app.gui.theme import DARK, LIGHT
+from app.gui.theme import DARK, LIGHT, palette_of
 from app.gui.views.scene import ColorScale, Frustum, Scene3D, box_mesh, cylinder_mesh, prepare_mesh
 from core.geometry import look_at
 from core.motion.arm_models import UR5

@@ -1,0 +1,24 @@
+"""Remedies as the terminal words them: commands and options."""
+
+from __future__ import annotations
+
+from core.errors import PoursightError, Remedy
+
+REMEDIES = {
+    Remedy.RUN_AGAIN: "Run the same command again.",
+    Remedy.CONTINUE: "Run the same command to continue.",
+    Remedy.FEWER_WORKERS: "Run the same command with fewer --workers.",
+    Remedy.IMPORT_SCAN: "Import a scan with 'poursight import', or take one with 'poursight scan'.",
+    Remedy.NEW_SESSION: "Give another --session.",
+    Remedy.CHOOSE_OBJECT: "Name it, such as --object mug; for a real cell give --cell FILE.",
+    Remedy.NO_OBJECT: "Put it there and leave out --object.",
+    Remedy.OTHER_CELL: "Give another one with --cell FILE.",
+    Remedy.RESTART_SCAN: "Run the same command with --restart to discard them.",
+    Remedy.START_CLUSTER: "'poursight cluster' starts one and prints its address.",
+    Remedy.SCAN_THE_MESH: "'poursight scan --object MESH --session DIR' scans it in the simulated cell.",
+}
+
+
+def worded(error: PoursightError) -> str:
+    """Return what went wrong and what to type about it, in one line."""
+    return str(error) if error.remedy is None else f"{error} {REMEDIES[error.remedy]}"

@@ -1,1 +1,0 @@
-"""Judging and pouring many labelled objects: core and hardware together, on one machine or many."""

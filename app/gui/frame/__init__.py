@@ -1,1 +1,0 @@
-"""What is always on the screen around the pages: tabs, chips, STOP, the job bar, messages and the log."""

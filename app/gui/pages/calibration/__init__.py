@@ -1,1 +1,0 @@
-"""Calibration: labelled objects judged with several sets of parameters, side by side."""

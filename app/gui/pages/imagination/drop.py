@@ -1,0 +1,238 @@
+"""An imagined drop as the page shows it: read in a thread, cut into phases, with its moments. Qt-free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from app.gui.views.scene import PreparedMesh, prepare_mesh
+from core.geometry import BoolArray, FloatArray
+from core.imagination.capacity.result import Capacity
+from core.imagination.particle_shape import particle_extents_m
+from core.imagination.recording import Float32Array, Recording
+from core.imagination.rendering.replay import lowest_point_m, make_replay
+from core.imagination.results import Containability
+from core.imagination.retention.result import Retention
+from core.mesh import TriangleMesh
+from core.parameters.bodies import ParticleParameters
+from core.parameters.imagination import ContainabilityParameters
+from core.pipeline.session_view import SessionView
+
+PhaseKey = Literal["drop", "tilt_x", "tilt_y", "push"]
+N_PUSHES = 4
+_GROUND_GAP_M = 0.0005
+_OUTLINE_DIRECTIONS = 180
+_NEAR = 0.6
+"""How far from the object, as a share of its size, a fallen candy still belongs to the picture."""
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A stretch of the drop.
+
+    Attributes:
+        key: which one.
+        begin_s: since the start.
+        end_s: since the start.
+        n_inside: candies within the object's bounding box at its end.
+    """
+
+    key: PhaseKey
+    begin_s: float
+    end_s: float
+    n_inside: int
+
+
+class Moments:
+    """Candies and body at any time of a recording; fast enough for every frame.
+
+    Attributes:
+        duration_s: time of the last moment.
+    """
+
+    def __init__(self, recording: Recording) -> None:
+        self._recording = recording
+        self.duration_s = float(recording.time_s[-1])
+
+    def positions_m(self, time_s: float) -> Float32Array:
+        """Return the candies (N, 3); NaN where one is absent at the moment before or after."""
+        before, after, share = self._around(time_s)
+        positions = self._recording.positions_m
+        between: Float32Array = positions[before] + share * (positions[after] - positions[before])
+        return between
+
+    def T_world_body(self, time_s: float) -> FloatArray:
+        """Return the body's pose (4, 4); interpolated entry by entry: it rotates little."""
+        before, after, share = self._around(time_s)
+        poses = self._recording.T_world_body
+        between: FloatArray = ((1 - share) * poses[before] + share * poses[after]).astype(float)
+        return between
+
+    def _around(self, time_s: float) -> tuple[int, int, np.float32]:
+        """The moments before and after a time, and how far it is between them, 0 to 1."""
+        times_s = self._recording.time_s
+        after = int(np.clip(np.searchsorted(times_s, time_s), 1, max(len(times_s) - 1, 1)))
+        if len(times_s) == 1:
+            return 0, 0, np.float32(0)
+        step_s = times_s[after] - times_s[after - 1]
+        share = np.clip((time_s - times_s[after - 1]) / step_s, 0, 1)
+        return after - 1, after, np.float32(share)
+
+
+@dataclass(frozen=True)
+class DropKey:
+    """Which files are to be shown: the session's folder and digests, empty for none."""
+
+    folder: Path
+    containability: str
+    judgement: str
+    collision: str
+
+
+@dataclass(frozen=True, eq=False)
+class ShownDrop:
+    """A drop, ready to be replayed.
+
+    Attributes:
+        containability: the result.
+        capacity: how much the object holds; none if it was not imagined.
+        retention: how far the object may be tilted; none if it was not imagined.
+        settings: it was imagined with.
+        particle: the candy.
+        seed: of all its randomness.
+        seconds: it took.
+        moments: candies and object at any time; what is lost lies where it passed the ground.
+        phases: what happened when.
+        n_on_top: candies that lie on the object at the end, but not in its bounding box.
+        body: the surface that the physics knew.
+        candy_radius_m: of a ball of about a candy's volume.
+        ground_m: height of the ground, just below everything the object reaches.
+        ground_radius_m: wide enough for what fell near the object.
+        outline_m: (n, 2) the object from above, its hull.
+        indents_m: distances of the pivots from the footprint's centre; empty without pours.
+    """
+
+    containability: Containability
+    capacity: Capacity | None
+    retention: Retention | None
+    settings: ContainabilityParameters
+    particle: ParticleParameters
+    seed: int
+    seconds: float
+    moments: Moments
+    phases: tuple[Phase, ...]
+    n_on_top: int
+    body: PreparedMesh
+    candy_radius_m: float
+    ground_m: float
+    ground_radius_m: float
+    outline_m: FloatArray
+    indents_m: tuple[float, ...]
+
+
+def key_of(view: SessionView) -> DropKey:
+    """Look up the stages' digests."""
+    records = [view.finished.get(stage) for stage in ("containability", "judgement", "collision")]
+    digests = ["" if record is None else record.digest for record in records]
+    return DropKey(view.session.path, *digests)
+
+
+def load(key: DropKey) -> ShownDrop | None:
+    """Read a session's drop; none if nothing was imagined.
+
+    Raises:
+        SessionError: a file is damaged, or of another version.
+    """
+    from core.collision import CollisionModel
+
+    view = SessionView.of(key.folder)
+    containability, judgement = view.containability, view.judgement
+    if containability is None or judgement is None or not key.collision:
+        return None
+    parameters = view.parameters_of("containability")
+    settings, particle = parameters.containability, parameters.particle
+    session, capacity, retention = view.session, judgement.capacity, judgement.retention
+    surface = CollisionModel.load(session.folder("collision")).surface
+    ground_m = lowest_point_m(surface, containability.recording.T_world_body) - _GROUND_GAP_M
+    # As balls the candies are as thick as they are wide: so thick they lie on the ground.
+    radius_m = float(np.prod(particle_extents_m(particle)) ** (1 / 3)) / 2
+    replay = make_replay(containability.recording, containability.retained, ground_m, 2 * radius_m)
+    return ShownDrop(
+        containability=containability,
+        capacity=capacity,
+        retention=retention,
+        settings=settings,
+        particle=particle,
+        seed=parameters.seed,
+        seconds=sum(
+            view.records[name].seconds for name in ("containability", "judgement") if name in view.records
+        ),
+        moments=Moments(replay.recording),
+        phases=phases_of(containability, settings),
+        n_on_top=_n_on_top(containability),
+        body=prepare_mesh(surface.vertices_m, surface.faces),
+        candy_radius_m=radius_m,
+        ground_m=ground_m,
+        ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1], replay.retained),
+        outline_m=_outline_m(surface),
+        indents_m=() if view.pours is None else view.pours.indent_m,
+    )
+
+
+def _n_on_top(containability: Containability) -> int:
+    """Fallen candies are no longer recorded, or are still falling."""
+    heights_m = containability.recording.positions_m[-1, ~containability.retained, 2]
+    with np.errstate(invalid="ignore"):
+        return int((heights_m >= containability.aabb_m[1, 2]).sum())
+
+
+def _ground_radius_m(surface: TriangleMesh, ends_m: FloatArray, retained: BoolArray) -> float:
+    """Around the object's middle."""
+    middle_m = (surface.aabb_min_m + surface.aabb_max_m)[:2] / 2
+    size_m = float(np.linalg.norm(surface.extents_m[:2])) / 2
+    fallen_m = np.linalg.norm(ends_m[~retained, :2] - middle_m, axis=1)
+    near_m = fallen_m[fallen_m < size_m * (1 + _NEAR)]  # NaN is not
+    return max(float(near_m.max(initial=0.0)), 1.2 * size_m)
+
+
+def _outline_m(surface: TriangleMesh) -> FloatArray:
+    """The hull (n, 2) from above: the farthest vertex in each direction."""
+    angles = np.linspace(0, 2 * np.pi, _OUTLINE_DIRECTIONS, endpoint=False)
+    points_m = surface.vertices_m[:, :2]
+    farthest = (points_m @ np.array([np.cos(angles), np.sin(angles)])).argmax(axis=0)
+    outline: FloatArray = points_m[farthest]
+    return outline
+
+
+def phases_of(containability: Containability, settings: ContainabilityParameters) -> tuple[Phase, ...]:
+    """Return the phases (Sec. III-A, Fig. 3a) that take time, in their order."""
+    lengths: dict[PhaseKey, float] = {
+        "drop": settings.drop_s,
+        "tilt_x": settings.rotation_s,
+        "tilt_y": settings.rotation_s,
+        "push": N_PUSHES * settings.translation_s,
+    }
+    phases, begin_s = [], 0.0
+    for key, length_s in lengths.items():
+        if length_s > 0:
+            n_inside = _n_inside(containability, begin_s + length_s)
+            phases.append(Phase(key, begin_s, begin_s + length_s, n_inside))
+            begin_s += length_s
+    return tuple(phases)
+
+
+def push_of(settings: ContainabilityParameters, since_s: float) -> str:
+    """Return the direction of the push, `since_s` after the first began."""
+    index = min(int(since_s / settings.translation_s), N_PUSHES - 1)
+    return ("+x", "-x", "+y", "-y")[index]
+
+
+def _n_inside(containability: Containability, time_s: float) -> int:
+    recording = containability.recording
+    positions_m = recording.positions_m[int(np.abs(recording.time_s - time_s).argmin())]
+    low_m, high_m = containability.aabb_m
+    with np.errstate(invalid="ignore"):  # NaN: fallen and gone
+        return int(((positions_m > low_m) & (positions_m < high_m)).all(axis=1).sum())

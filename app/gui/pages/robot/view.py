@@ -1,0 +1,226 @@
+"""The cell in 3D: the arm as it is, and see-through what is planned, with a timeline to scrub."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+from PySide6.QtWidgets import QLabel, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+
+from app.gui.pages.layouts import lay_around
+from app.gui.pages.robot.loading import RobotCell
+from app.gui.pages.robot.motion import ShownMotion, move_text
+from app.gui.theme import GRID_PX
+from app.gui.views.scene import PreparedMesh, Scene3D
+from app.gui.views.timeline import Section, Timeline
+from core.geometry import FloatArray, make_pose
+from core.motion.kinematics import flange_pose
+
+AHEAD_S = 1.0
+"""So far the ghost is ahead of the moving arm, in seconds of the plan."""
+_CUP_OPACITY, _GHOST_CUP_OPACITY, _PLATFORM_OPACITY = 0.55, 0.3, 0.6
+_GHOST_ARM = "planned arm"
+_MOST_OFTEN_S = 0.09
+_SAME_RAD = 5e-4
+_APART_RAD = 0.01
+"""Nearer than this the ghost would only blur the arm."""
+
+
+class ArmView(QWidget):
+    """Shows the cell, the object, the arm and the cup now, and the planned motion at the timeline's time.
+
+    Attributes:
+        scene: the 3D view.
+        timeline: of the planned motion.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("arm_view")
+        self._cell: RobotCell | None = None
+        self._motion: ShownMotion | None = None
+        self._joints_rad: FloatArray | None = None
+        self._holds_cup: bool | None = False
+        self._T_flange_cup: FloatArray | None = None
+        self._drawn: tuple[FloatArray, bool | None] | None = None
+        self._drawn_s = 0.0
+        self._is_following = False
+        self.scene = Scene3D()
+        self.scene.setObjectName("robot_scene")
+        self.scene.set_empty_text(self.tr("The arm is shown here."))
+        self.timeline = Timeline()
+        self.timeline.time_changed.connect(self._show_time)
+        self._caption = QLabel()
+        self._caption.setObjectName("arm_caption")
+        self._now = QLabel()
+        self._now.setObjectName("plan_now")
+        self._hint = QLabel(self.tr("The planned motion can be inspected here before anything moves."))
+        self._hint.setProperty("role", "muted")
+        self._strip = QStackedWidget()
+        self._build()
+
+    def _build(self) -> None:
+        for line in (self._caption, self._now, self._hint):
+            line.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self._strip.addWidget(self._hint)
+        self._strip.addWidget(self.timeline)
+        self._strip.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        bottom = QVBoxLayout()
+        bottom.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        bottom.addWidget(self._now)
+        bottom.addWidget(self._strip)
+        top = QVBoxLayout()
+        top.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        top.addWidget(self._caption)
+        lay_around(self, top, self.scene, bottom)
+        self._show_caption()
+
+    def show_cell(self, cell: RobotCell) -> None:
+        """Show another cell, with its arm at home until something else is known."""
+        self._cell = cell
+        scene = self.scene
+        cell.model.draw_furniture(scene, "line", "raised", _PLATFORM_OPACITY)
+        scene.set_label("station", cell.station_m, self.tr("cup station"))
+        scene.set_points("corners", cell.corners_m, color="scene", size_px=1)  # unseen; kept in view
+        scene.set_prepared_mesh("cup", cell.cup, color="kept", opacity=_CUP_OPACITY)
+        scene.set_prepared_mesh("planned cup", cell.cup, color="ghost", opacity=_GHOST_CUP_OPACITY)
+        model = cell.model
+        scene.set_arm(_GHOST_ARM, model.arm, model.home_rad, tools=model.tools, is_ghost=True)
+        self._set_arm(is_connected=self._joints_rad is not None)
+        self._place_cup()
+        self._show_time(self.timeline.time_s)
+        scene.fit("corners")
+
+    def show_object(self, mesh: PreparedMesh | None) -> None:
+        """Show another object; none: none."""
+        if mesh is None:
+            self.scene.remove("object")
+        else:
+            self.scene.set_prepared_mesh("object", mesh)
+
+    def show_arm(self, joints_rad: FloatArray | None, holds_cup: bool | None) -> None:
+        """Show where the arm is now.
+
+        Args:
+            joints_rad: (6,); none: it is not connected, and drawn at its home.
+            holds_cup: whether the cup is in the hand, not at its station; none: nobody knows.
+        """
+        was_connected, is_connected = self._joints_rad is not None, joints_rad is not None
+        self._joints_rad, self._holds_cup = joints_rad, holds_cup
+        if self._cell is None:
+            return
+        if was_connected != is_connected:
+            self._set_arm(is_connected)
+            self._show_caption()
+            self._place_cup()
+        elif not self._is_following:  # while it moves, `follow` draws
+            self._draw_arm()
+
+    def show_motion(self, motion: ShownMotion | None) -> None:
+        """Show what was planned from its beginning; none: nothing."""
+        if motion is self._motion:
+            return
+        self._motion = motion
+        for name in ("path", "pivot"):
+            self.scene.remove(name)
+        if motion is None:
+            self.timeline.set_sections(0.0)
+        else:
+            self._T_flange_cup = motion.T_flange_cup
+            self.scene.set_line("path", motion.mouth_m, color="ghost", width_px=2)
+            if motion.pivot_m is not None:
+                self.scene.set_label("pivot", motion.pivot_m, self.tr("pivot"))
+            ends_s = [*motion.begins_s[1:], motion.duration_s]
+            sections = [
+                Section(move.label, begin_s, end_s)
+                for move, begin_s, end_s in zip(motion.moves, motion.begins_s, ends_s, strict=True)
+            ]
+            self.timeline.set_sections(motion.duration_s, sections)
+        self._strip.setCurrentWidget(self._hint if motion is None else self.timeline)
+        self._show_time(self.timeline.time_s)
+        self._show_caption()
+
+    def follow(self, done_s: float | None) -> None:
+        """Let the timeline go with the moving arm, the ghost a little ahead; none: it has ended."""
+        if (done_s is not None) != self._is_following:
+            self._is_following = done_s is not None
+            self.timeline.pause()
+            self.timeline.setEnabled(not self._is_following)
+            self._show_caption()
+        elif done_s is None or time.monotonic() - self._drawn_s < _MOST_OFTEN_S:
+            return
+        self._drawn_s = time.monotonic()
+        self._draw_arm()
+        if done_s is not None:
+            self.timeline.set_time(done_s)
+
+    def _draw_arm(self) -> None:
+        """Bring the arm, and the cup in its hand, to where they are, if they were seen elsewhere."""
+        joints_rad = self._joints_rad
+        if joints_rad is None or self._cell is None:
+            return
+        drawn = self._drawn
+        is_same_hand = drawn is not None and drawn[1] == self._holds_cup
+        if drawn is not None and is_same_hand and not _differ(joints_rad, drawn[0], _SAME_RAD):
+            return
+        self._drawn = joints_rad, self._holds_cup
+        self.scene.set_joints("arm", joints_rad)
+        self._place_cup()
+
+    def _set_arm(self, is_connected: bool) -> None:
+        """An arm of which nobody knows where it is, is see-through."""
+        assert self._cell is not None, "called when there is a cell"
+        model = self._cell.model
+        joints_rad = model.home_rad if self._joints_rad is None else self._joints_rad
+        self.scene.set_arm("arm", model.arm, joints_rad, tools=model.tools, is_ghost=not is_connected)
+        self._drawn = None
+
+    def _place_cup(self) -> None:
+        """In the hand or at its station; away if nobody knows where it is."""
+        cell, joints_rad, T_flange_cup = self._cell, self._joints_rad, self._T_flange_cup
+        if cell is None:
+            return
+        T_base_cup: FloatArray | None = make_pose(np.eye(3), cell.station_m)
+        if self._holds_cup and joints_rad is not None and T_flange_cup is not None:
+            T_base_cup = flange_pose(cell.model.arm, joints_rad) @ T_flange_cup
+        elif self._holds_cup is not False:
+            T_base_cup = None
+        self.scene.set_visible("cup", T_base_cup is not None)
+        if T_base_cup is not None:
+            self.scene.set_pose("cup", T_base_cup)
+
+    def _show_time(self, time_s: float) -> None:
+        """Put the ghost to where the plan is at a time."""
+        cell, motion = self._cell, self._motion
+        if cell is None:
+            return
+        if motion is None:
+            self.scene.set_visible(_GHOST_ARM, False)
+            self.scene.set_visible("planned cup", False)
+            self._now.clear()
+            return
+        moment = motion.at(time_s + AHEAD_S if self._is_following else time_s)
+        now_rad = self._joints_rad
+        self.scene.set_joints(_GHOST_ARM, moment.joints_rad)
+        is_apart = now_rad is None or _differ(moment.joints_rad, now_rad, _APART_RAD)
+        self.scene.set_visible(_GHOST_ARM, is_apart)
+        self.scene.set_visible("planned cup", moment.holds_cup and is_apart)
+        if moment.holds_cup:
+            T_base_cup = flange_pose(cell.model.arm, moment.joints_rad) @ motion.T_flange_cup
+            self.scene.set_pose("planned cup", T_base_cup)
+        self._now.setText(move_text(motion.moves[motion.at(time_s).index].name))
+
+    def _show_caption(self) -> None:
+        if self._joints_rad is None:
+            said = self.tr("Not connected: the arm is drawn at its home position.")
+        elif self._motion is None:
+            said = self.tr("The arm as it is now.")
+        elif self._is_following:
+            said = self.tr("Solid: the arm now. Transparent: the plan, one second ahead.")
+        else:
+            said = self.tr("Solid: the arm now. Transparent: the plan at the time selected below.")
+        self._caption.setText(said)
+
+
+def _differ(one_rad: FloatArray, other_rad: FloatArray, by_rad: float) -> bool:
+    return bool(np.abs(one_rad - other_rad).max() > by_rad)

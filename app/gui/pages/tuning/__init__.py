@@ -1,0 +1,1 @@
+"""Tune: sets of parameters compared on objects whose answer is known, and fitted to them."""

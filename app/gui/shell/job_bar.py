@@ -1,0 +1,272 @@
+"""What the program reports: a message above the page; the job under way, what is next and the log below."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+
+from PySide6.QtCore import QCoreApplication, Qt, Signal
+from PySide6.QtWidgets import (
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QPlainTextEdit,
+    QPushButton,
+    QSizePolicy,
+    QVBoxLayout,
+)
+
+from app.gui.desk.jobs import Jobs, RunningJob
+from app.gui.desk.page_states import PageState
+from app.gui.desk.stage_words import stage_words
+from app.gui.pages.registry import WORK
+from app.gui.theme import GRID_PX
+from app.gui.views.labels import duration_text
+from app.gui.views.progress_line import ProgressLine
+from app.gui.views.state_mark import State, StateMark
+from app.jobs.messages import Failed
+
+_BAR_PX, _LOG_PX, _DETAILS_PX = 44, 150, 160
+_MOST_LINES = 2000
+
+
+class JobBar(QFrame):
+    """The bar below the pages: what runs, how long it will take, and Cancel; else what to do next."""
+
+    log_wanted = Signal(bool)
+    next_wanted = Signal(str)
+
+    def __init__(self, jobs: Jobs) -> None:
+        super().__init__()
+        self.setObjectName("job_bar")
+        self.setFixedHeight(
+            _BAR_PX
+        )  # a button that appears or disappears must not resize the page and its 3D view
+        self._jobs = jobs
+        self._text = QLabel()
+        self._text.setObjectName("job_text")
+        self._left = QLabel()
+        self._left.setProperty("role", "muted")
+        self._bar = ProgressLine()
+        self._bar.setObjectName("job_progress")
+        self._bar.setFixedSize(28 * GRID_PX, GRID_PX)
+        self._cancel = QPushButton(self.tr("Cancel"))
+        self._cancel.setObjectName("cancel")
+        self._cancel.setToolTip(self.tr("Stop this job; finished stages are kept."))
+        self._cancel.clicked.connect(jobs.cancel)
+        self._log = QPushButton(self.tr("Log"))
+        self._log.setObjectName("log_toggle")
+        self._log.setCheckable(True)
+        self._log.setToolTip(self.tr("Everything reported since the program started (Ctrl+L)."))
+        self._log.toggled.connect(self.log_wanted)
+        self._step: NextStep | None = None
+        self._next = QPushButton()
+        self._next.setObjectName("next")
+        self._next.setProperty("role", "next")
+        self._next.clicked.connect(self._go_on)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(2 * GRID_PX, GRID_PX // 2, GRID_PX, GRID_PX // 2)
+        row.setSpacing(2 * GRID_PX)
+        for widget in (self._text, self._bar, self._left):
+            row.addWidget(widget)
+        row.addStretch(1)
+        row.addWidget(self._next)
+        row.addWidget(self._cancel)
+        row.addWidget(self._log)
+        jobs.started.connect(self._show)
+        jobs.progressed.connect(self._show)
+        jobs.finished.connect(lambda job, _: self._rest(self.tr("{title}: done.").format(title=job.title)))
+        jobs.failed.connect(
+            lambda job, _: self._rest(self.tr("{title}: did not finish.").format(title=job.title))
+        )
+        self._rest(self.tr("Ready."))
+
+    def toggle_log(self) -> None:
+        """Open or close the log."""
+        self._log.toggle()
+
+    def show_next(self, step: NextStep | None) -> None:
+        """Offer what comes next; it is hidden while something runs."""
+        self._step = step
+        self._next.setText("" if step is None else step.words)
+        self._next.setVisible(step is not None and self._jobs.is_idle)
+
+    def _go_on(self) -> None:
+        if self._step is not None:
+            self.next_wanted.emit(self._step.page)
+
+    def _show(self, job: RunningJob) -> None:
+        doing = stage_words(job.stage) if job.stage else self.tr("starting")
+        if job.is_cancelling:
+            doing = self.tr("stopping")
+        self._text.setText(f"{job.title}: {doing}")
+        self._bar.show()
+        self._bar.set_fraction(job.fraction if job.stage else None)
+        self._left.setText(self._time_left(job))
+        self._next.hide()
+        self._cancel.setVisible(True)
+        self._cancel.setEnabled(not job.is_cancelling)
+
+    def _time_left(self, job: RunningJob) -> str:
+        share = self.tr("{percent} %").format(percent=round(100 * job.fraction)) if job.stage else ""
+        if job.seconds_left is None or job.is_cancelling:
+            return share
+        return self.tr("{share}, about {time} left").format(share=share, time=duration_text(job.seconds_left))
+
+    def _rest(self, text: str) -> None:
+        self._text.setText(text)
+        self._left.clear()
+        self._bar.hide()
+        self._cancel.hide()
+
+
+@dataclass(frozen=True)
+class NextStep:
+    """The page to go to, and the button's text."""
+
+    page: str
+    words: str
+
+
+def next_step(states: dict[str, PageState], is_container: bool | None, shown: str) -> NextStep | None:
+    """Return the first step of the work that is not up to date; none when all is done.
+
+    Args:
+        states: of the pages.
+        is_container: the verdict; none before there is one. Only a container is poured into.
+        shown: the page that is shown: the arm only pours once the pours have been reviewed.
+    """
+    translate = QCoreApplication.translate
+    words = {
+        "scan": translate("NextStep", "Next: scan the object"),
+        "reconstruction": translate("NextStep", "Next: reconstruct the surface"),
+        "imagination": translate("NextStep", "Next: test whether it holds candies"),
+        "pours": translate("NextStep", "Next: review the pours"),
+        "robot": translate("NextStep", "Next: let the arm pour"),
+    }
+    for page in WORK:
+        if page in ("pours", "robot") and is_container is False:
+            return None
+        if states[page].word == "fresh":
+            continue
+        if page == "robot" and shown not in ("pours", "robot"):
+            return NextStep("pours", words["pours"])
+        return NextStep(page, words[page])
+    return None
+
+
+class MessageBar(QFrame):
+    """One sentence above the page: what went wrong and how to go on; the details are behind a click."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("message_bar")
+        self._mark = StateMark()
+        self._sentence = QLabel()
+        self._sentence.setObjectName("message")
+        self._sentence.setWordWrap(True)
+        self._sentence.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._sentence.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
+        self._action = QPushButton()
+        self._action.setObjectName("message_action")
+        self._more = QPushButton(self.tr("Details"))
+        self._more.setObjectName("message_details")
+        self._more.setCheckable(True)
+        close = QPushButton(self.tr("Close"))
+        close.setObjectName("message_close")
+        close.clicked.connect(self.hide)
+        self._details = QPlainTextEdit()
+        self._details.setReadOnly(True)
+        self._details.setFixedHeight(_DETAILS_PX)
+        self._details.hide()
+        self._more.toggled.connect(self._details.setVisible)
+        self._do: Callable[[], object] | None = None
+        self._action.clicked.connect(self._act)
+        row = QHBoxLayout()
+        row.setSpacing(GRID_PX)
+        row.addWidget(self._mark)
+        row.addWidget(self._sentence, 1)
+        for button in (self._action, self._more, close):
+            row.addWidget(button)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        column.addLayout(row)
+        column.addWidget(self._details)
+        self.hide()
+
+    @property
+    def sentence(self) -> str:
+        """What it says; empty while it is hidden."""
+        return "" if self.isHidden() else self._sentence.text()
+
+    def say(
+        self,
+        sentence: str,
+        *,
+        state: State = "stale",
+        details: str = "",
+        action: str = "",
+        do: Callable[[], object] | None = None,
+    ) -> None:
+        """Show a sentence.
+
+        Args:
+            sentence: what happened and what to do.
+            state: its mark is shown before the sentence.
+            details: shown on request.
+            action: text of a button that does something about it.
+            do: what that button does.
+        """
+        self._sentence.setText(sentence)
+        self._mark.set_state(state)
+        self._mark.setToolTip("")  # the sentence says what it is
+        self._more.setChecked(False)
+        self._more.setVisible(bool(details))
+        self._details.setPlainText(details)
+        self._do = do
+        self._action.setText(action)
+        self._action.setVisible(do is not None)
+        self.show()
+
+    def _act(self) -> None:
+        do, self._do = self._do, None
+        self.hide()
+        if do is not None:
+            do()
+
+
+class LogDrawer(QFrame):
+    """Everything reported since the program started, newest at the bottom; opened from the job bar."""
+
+    def __init__(self, jobs: Jobs) -> None:
+        super().__init__()
+        self.setObjectName("log_drawer")
+        self._text = QPlainTextEdit()
+        self._text.setObjectName("log")
+        self._text.setReadOnly(True)
+        self._text.setMaximumBlockCount(_MOST_LINES)
+        self._text.setAccessibleName(self.tr("Log"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self._text)
+        self.setFixedHeight(_LOG_PX)
+        jobs.started.connect(lambda job: self.add(self.tr("{title}: started.").format(title=job.title)))
+        jobs.finished.connect(lambda job, _: self.add(self.tr("{title}: done.").format(title=job.title)))
+        jobs.failed.connect(self._failed)
+        jobs.warned.connect(self.add)
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """All lines."""
+        return self._text.toPlainText()
+
+    def add(self, sentence: str) -> None:
+        """Add a line with the time."""
+        self._text.appendPlainText(f"{datetime.now():%H:%M:%S}  {sentence}")
+
+    def _failed(self, job: RunningJob, failed: Failed) -> None:
+        self.add(f"{job.title}: {failed.sentence}")
+        if failed.details:
+            self._text.appendPlainText(failed.details.rstrip())

@@ -1,0 +1,325 @@
+"""The window: the frame around the pages, and which page is shown. It makes no decision about the work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+
+from PySide6.QtCore import QThread, QTimer, Signal
+from PySide6.QtGui import QCloseEvent, QGuiApplication
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
+from typing_extensions import override
+
+from app.gui.desk.desk import Desk
+from app.gui.desk.jobs import RunningJob
+from app.gui.desk.memory import Memory
+from app.gui.desk.page_states import page_states, with_failure
+from app.gui.pages.page import Page, SplitView
+from app.gui.pages.registry import OTHERS, WORK, import_page, make_page, tab_facts
+from app.gui.pages.welcome.page import WelcomePage
+from app.gui.shell.frame import TabList, TopBar
+from app.gui.shell.job_bar import JobBar, LogDrawer, MessageBar, next_step
+from app.jobs.arm_events import StopDone
+from app.jobs.messages import Failed, FailureKind
+from app.library.index import Library
+from app.library.places import sessions_folder
+
+SMALLEST_PX = (1100, 700)
+USUAL_PX = (1280, 800)
+MUG = "mug"
+BREATH_MS = 30
+STARTED_BY_NEXT = ("scan", "reconstruction", "imagination", "robot")
+"""Pages whose job starts with the click on "Next"."""
+ARM_PAGES = ("scan", "robot")
+"""Pages whose work moves the arm: with a real one "Next" only shows them."""
+_OPENGL = "app.gui.views.scene.view"
+"""Where pyqtgraph and PyOpenGL come in; the scene itself imports it when the first one is made."""
+
+
+class Preload(QThread):
+    """Imports the slow modules in a thread once the window is on the screen."""
+
+    @override
+    def run(self) -> None:
+        import_module(_OPENGL)
+        for key in (*WORK, *OTHERS):
+            import_page(key)
+
+
+class MainWindow(QMainWindow):
+    """Everything the user sees.
+
+    Signals: `ready` once everything slow at the start is done.
+    """
+
+    ready = Signal()
+
+    def __init__(self, memory: Memory) -> None:
+        super().__init__()
+        self.setWindowTitle("Poursight")
+        self.setMinimumSize(*SMALLEST_PX)
+        self.resize(*USUAL_PX)
+        self.memory = memory
+        self.desk = Desk(self)
+        self._failed_page: str | None = None
+        self._states = page_states(self.desk.workspace, None)
+        self._asks_before_closing = True
+        self._pages: dict[str, Page] = {}
+        self._laid_out: set[str] = set()
+        self._stack = QStackedWidget()
+        self._tabs = TabList(tuple(map(tab_facts, WORK)), tuple(map(tab_facts, OTHERS)))
+        self.messages = MessageBar()
+        self.log = LogDrawer(self.desk.jobs)
+        self.job_bar = JobBar(self.desk.jobs)
+        self.top_bar = TopBar(self.desk, self)
+        self.welcome = WelcomePage(self.desk, memory)
+        self._stack.addWidget(self.welcome)
+        self._preload = Preload(self)
+        self._lay_out()
+        self._connect()
+        self._show_states()
+
+    def begin(self) -> None:
+        """Start the slow part; the window is on the screen by now."""
+        self.desk.cell.restore()
+        self._preload.finished.connect(self._make_pages)
+        self._preload.start()
+
+    def _make_pages(self) -> None:
+        """Make the pages one by one, so that no click has to wait for one; then all is ready."""
+        missing = [key for key in (*WORK, *OTHERS) if key not in self._pages]
+        if missing:
+            self.page(missing[0])
+            QTimer.singleShot(BREATH_MS, self, self._make_pages)
+            return
+        from app.gui.views.scene.scene3d import warm_up
+
+        self.desk.prepare()  # not before: it would compete with the pages' imports for processors
+        self._warm_up(warm_up(self))
+
+    def _warm_up(self, steps: Iterator[None]) -> None:
+        for _ in steps:
+            QTimer.singleShot(BREATH_MS, self, partial(self._warm_up, steps))
+            return
+        self.ready.emit()
+
+    @property
+    def shown(self) -> str:
+        """Key of the page that is shown."""
+        page = self._stack.currentWidget()
+        return "" if page is None else page.objectName()
+
+    def page(self, key: str) -> Page:
+        """Return a page, made at its first use."""
+        if key == WelcomePage.KEY:
+            return self.welcome
+        if key not in self._pages:
+            page = make_page(key, self.desk)
+            self._stack.addWidget(page)
+            self._pages[key] = page
+        return self._pages[key]
+
+    def show_page(self, key: str) -> None:
+        """Show a page."""
+        page = self.page(key)
+        page.resize(
+            self._stack.size()
+        )  # before it is shown: a 3D view paints at every size it passes through
+        self._stack.setCurrentWidget(page)
+        if key not in self._laid_out:
+            self._laid_out.add(key)
+            self._restore_split(page)
+        self._tabs.choose(key)
+        self._show_next()
+
+    def go_on(self, key: str) -> None:
+        """Show a page and, where that moves nothing real, press its button."""
+        self.show_page(key)
+        if key in STARTED_BY_NEXT and (key not in ARM_PAGES or self.desk.cell.is_simulated):
+            self.page(key).press_primary()
+
+    def scan_the_mug(self) -> None:
+        """Start with the mug in the simulated cell: what a newcomer sees first."""
+        self.desk.cell.choose(None, then=self._scan_the_mug)
+
+    def _scan_the_mug(self) -> None:
+        from app.gui.pages.scan.page import ScanPage
+
+        page = self.page("scan")
+        if isinstance(page, ScanPage) and self.desk.new_session(MUG):
+            self.show_page("scan")
+            page.scan(MUG)
+
+    def reset_layout(self) -> None:
+        """Give window and pages their usual sizes."""
+        self.showNormal()
+        self.resize(*USUAL_PX)
+        for split in self.findChildren(SplitView):
+            split.reset()
+
+    def offer_cut_off_session(self) -> None:
+        """After an unexpected end, offer the session that was open."""
+        last = self.memory.last_session
+        if self.memory.was_cut_off and last is not None:
+            self.messages.say(
+                self.tr(
+                    "Poursight ended unexpectedly while the session '{name}' was open; its finished stages "
+                    "are kept."
+                ).format(name=last.name),
+                action=self.tr("Open session"),
+                do=partial(self.desk.open_session, last),
+            )
+
+    def close_without_asking(self) -> None:
+        """End the running job, and the program."""
+        self._asks_before_closing = False
+        self.close()
+
+    @override
+    def closeEvent(self, event: QCloseEvent) -> None:
+        is_busy = not self.desk.jobs.is_idle
+        if is_busy and self._asks_before_closing and not self._may_stop_work():
+            event.ignore()
+            return
+        self._store_layout()
+        self.desk.close()
+        self.memory.store_session(None)  # only now: a kill while the work ends is one, too
+        self._preload.wait()
+        super().closeEvent(event)
+
+    def _may_stop_work(self) -> bool:
+        job = self.desk.jobs.running
+        box = QMessageBox(self)
+        box.setObjectName("closing")
+        box.setWindowTitle(self.tr("A job is running"))
+        title = job.title if job is not None else ""
+        box.setText(self.tr("'{title}' is still running. Stop it and close?").format(title=title))
+        box.setInformativeText(self.tr("Finished stages are kept; a moving arm is stopped."))
+        stop = box.addButton(self.tr("Stop and close"), QMessageBox.ButtonRole.AcceptRole)
+        stay = box.addButton(self.tr("Keep working"), QMessageBox.ButtonRole.RejectRole)
+        box.setDefaultButton(stay)
+        box.exec()
+        if box.clickedButton() is not stop:
+            return False
+        self.desk.arm.stop()
+        return True
+
+    def _lay_out(self) -> None:
+        middle = QHBoxLayout()
+        middle.setSpacing(0)
+        middle.addWidget(self._tabs)
+        middle.addWidget(self._stack, 1)
+        column = QVBoxLayout()
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.top_bar)
+        column.addWidget(self.messages)
+        column.addLayout(middle, 1)
+        column.addWidget(self.log)
+        column.addWidget(self.job_bar)
+        whole = QWidget()
+        whole.setLayout(column)
+        # Qt recreates the native window for its first OpenGL widget: let an invisible one do that now.
+        if QGuiApplication.platformName() != "offscreen":
+            QOpenGLWidget(whole).setGeometry(0, 0, 1, 1)
+        self.setCentralWidget(whole)
+
+    def _connect(self) -> None:
+        desk = self.desk
+        self._tabs.chosen.connect(self.show_page)
+        desk.page_wanted.connect(self.show_page)
+        desk.message.connect(self._show_message)
+        desk.workspace.session_changed.connect(self._on_session)
+        desk.workspace.stages_changed.connect(self._show_states)
+        desk.jobs.started.connect(self._on_started)
+        desk.jobs.failed.connect(self._on_failed)
+        self.job_bar.log_wanted.connect(self.log.setVisible)
+        self.job_bar.next_wanted.connect(self.go_on)
+        self.top_bar.stop.pressed.connect(self.stop)
+        desk.arm.stopped.connect(self._on_stopped)
+        self.welcome.mug_wanted.connect(self.scan_the_mug)
+
+    def stop(self) -> None:
+        """STOP: the arm first, over every channel there is; then the job that moved it."""
+        self.desk.arm.stop()
+        self.log.add(self.tr("STOP was pressed."))
+        job = self.desk.jobs.running
+        if job is not None and job.host is not self.desk.session_host:
+            self.desk.jobs.cancel()
+
+    def _on_stopped(self, done: StopDone) -> None:
+        if done.sentence:
+            self.messages.say(done.sentence, state="failed")
+        ms = round(1000 * done.seconds)
+        self.log.add(
+            done.sentence or self.tr("The controller confirmed the stop after {ms} ms.").format(ms=ms)
+        )
+
+    def _show_message(self, sentence: str) -> None:
+        self.messages.say(sentence)
+        self.log.add(sentence)
+
+    def _on_session(self) -> None:
+        self._failed_page = None
+        folder = self.desk.workspace.folder
+        if folder is not None:
+            self.memory.store_session(folder)
+            self.desk.background.run("remember", partial(_remember, folder), lambda _: None)
+        self.setWindowTitle("Poursight" if folder is None else f"{folder.name} – Poursight")
+        self.messages.hide()
+        if folder is None:
+            self.show_page(WelcomePage.KEY)
+        elif self.shown == WelcomePage.KEY:
+            self.show_page("scan")
+
+    def _on_started(self, _job: RunningJob) -> None:
+        self._failed_page = None
+        self.messages.hide()
+        self._show_states()
+
+    def _on_failed(self, job: RunningJob, failed: Failed) -> None:
+        if failed.kind is not FailureKind.CANCELLED:
+            self._failed_page = job.page
+        self.messages.say(
+            failed.sentence,
+            state="stale" if failed.kind is FailureKind.CANCELLED else "failed",
+            details=failed.details,
+            action=self.tr("Try again"),
+            do=job.start_again,
+        )
+        self._show_states()
+
+    def _show_states(self) -> None:
+        job = self.desk.jobs.running
+        self._states = page_states(self.desk.workspace, job.page if job is not None else None)
+        for key, state in with_failure(self._states, self._failed_page).items():
+            self._tabs.set_state(key, state)
+        self._show_next()
+
+    def _show_next(self) -> None:
+        workspace = self.desk.workspace
+        is_open = workspace.session is not None
+        self.job_bar.show_next(
+            next_step(self._states, workspace.is_container, self.shown) if is_open else None
+        )
+
+    def _restore_split(self, page: Page) -> None:
+        split = page.findChild(SplitView)
+        sizes = self.memory.split(page.KEY)
+        if split is not None and sizes is not None:
+            # A page gets its size when it is laid out; sizes set before would be scaled from zero.
+            QTimer.singleShot(0, split, lambda: split.setSizes(sizes))
+
+    def _store_layout(self) -> None:
+        self.memory.geometry = self.saveGeometry()
+        for key, page in self._pages.items():
+            split = page.findChild(SplitView)
+            if split is not None and key in self._laid_out:  # others never had a size of their own
+                self.memory.store_split(key, split.sizes())
+
+
+def _remember(folder: Path) -> None:
+    Library((sessions_folder(),)).remember(folder)

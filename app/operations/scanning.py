@@ -1,0 +1,235 @@
+"""Scanning: the views of an object in a cell, stored in a session, and further views worth taking."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from app.library.session_folder import UNFINISHED_SCAN
+from core.errors import InputError, StageError
+from core.progress import Reporter
+
+if TYPE_CHECKING:
+    from core.mesh import TriangleMesh
+    from core.pipeline.pipeline import Pipeline
+    from hardware.cell import Cell, CellSettings
+    from hardware.scanning.procedure import ScanControl, ViewsPlanned, ViewTaken
+    from hardware.scanning.store import ScanStore
+
+_WATCHED_SPEED_UP = 5.0
+"""Whoever watches a simulated scan wants to see the arm move, but not for a minute."""
+
+
+@dataclass(frozen=True)
+class ScanRequest:
+    """What to do beyond the scan itself.
+
+    Attributes:
+        adaptive: take more views where the inside of an opening was not seen.
+        retake: names of views of the finished scan to take again.
+        restart: discard what an interrupted scan left.
+    """
+
+    adaptive: bool = False
+    retake: tuple[str, ...] = ()
+    restart: bool = False
+
+
+@dataclass(frozen=True)
+class ScanObserver:
+    """How somebody follows a scan while it is made.
+
+    Attributes:
+        control: pauses it.
+        opened: called with the cell; what it returns is entered while the cell's devices are connected.
+        planned: called with what `ScanProcedure` plans.
+        taken: called with each view.
+    """
+
+    control: ScanControl
+    opened: Callable[[Cell], AbstractContextManager[object]]
+    planned: ViewsPlanned
+    taken: ViewTaken
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """Views that would show more of the inside; what `propose_views` returns.
+
+    Attributes:
+        n_views: how many; zero if none would show more.
+        revealed_share: of what is hidden inside openings, 0 to 1, as far as can be known beforehand.
+    """
+
+    n_views: int
+    revealed_share: float
+
+
+def scan_object(
+    pipeline: Pipeline,
+    settings: CellSettings,
+    source: str | None,
+    request: ScanRequest = ScanRequest(),
+    observer: ScanObserver | None = None,
+) -> None:
+    """Scan in a cell, continuing what was interrupted; nothing is done when the session holds this very scan.
+
+    Args:
+        pipeline: of the session; its seed is that of a simulated cell.
+        settings: the cell.
+        source: for a simulated cell, a built-in object's name or a mesh file.
+        request: what to do beyond that.
+        observer: of whoever follows it; a simulated arm then moves where it would jump.
+
+    Raises:
+        PoursightError: the sentence says what is in the way; no view that was taken is lost.
+    """
+    from hardware.scanning.store import ScanStore
+
+    is_replay = settings.camera.kind == "replay"
+    if is_replay and (request.adaptive or request.retake):
+        raise InputError(
+            "A recorded scan cannot be taken again, nor can views be added to it; scan in another cell."
+        )
+    mesh = object_mesh(source, pipeline.reporter) if source is not None else None
+    seed = pipeline.parameters.seed
+    origin = _origin(settings, source, mesh, seed)
+    is_done = pipeline.session.is_fresh("scan", {}, origin)
+    store = ScanStore(pipeline.session.path / UNFINISHED_SCAN, origin)
+    if request.restart or is_replay:  # playing a recording again costs nothing
+        store.remove()
+    if is_done and not request.restart and not store.folder.exists():
+        if not (request.adaptive or request.retake):
+            return
+        store.adopt(pipeline.session.folder("scan"))
+    elif request.retake and not is_done:
+        raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
+    _take(pipeline, settings, mesh, seed, store, request, observer)
+    pipeline.keep_written_scan(store.publish, origin)
+    store.remove()
+
+
+def _take(
+    pipeline: Pipeline,
+    settings: CellSettings,
+    mesh: TriangleMesh | None,
+    seed: int,
+    store: ScanStore,
+    request: ScanRequest,
+    observer: ScanObserver | None,
+) -> None:
+    from hardware.scanning.next_best_views import take_next_best_views
+    from hardware.scanning.procedure import ScanProcedure
+    from hardware.scanning.views import name_views
+
+    with (
+        _open(settings if observer is None else _animated(settings), mesh, seed) as cell,
+        nullcontext() if observer is None else observer.opened(cell),
+    ):
+        followed = () if observer is None else (observer.control, observer.taken, observer.planned)
+        procedure = ScanProcedure(cell, store, pipeline.reporter, *followed)
+        procedure.take(name_views(cell.views_rad))
+        procedure.retake(request.retake)
+        if request.adaptive:
+            take_next_best_views(cell, procedure)
+        procedure.scan()  # refuses what is too little for a scan
+
+
+def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
+    from hardware.cell import open_cell
+    from hardware.simulation.placing import world_with
+
+    world = None if mesh is None else world_with(mesh, settings.place, seed)
+    return open_cell(settings, world, seed)
+
+
+def _animated(settings: CellSettings) -> CellSettings:
+    """The same cell, with a simulated arm that moves where it would jump; its images are the same.
+
+    As if time ran faster: speeds grow with the factor, accelerations with its square.
+    """
+    if not (settings.is_simulated and settings.simulation.is_instant):
+        return settings
+    robot, factor = settings.robot, _WATCHED_SPEED_UP
+    faster = {
+        "joint_speed_rad_s": factor * robot.joint_speed_rad_s,
+        "joint_acceleration_rad_s2": factor**2 * robot.joint_acceleration_rad_s2,
+    }
+    return settings.model_copy(
+        update={
+            "robot": robot.model_copy(update=faster),
+            "scan": settings.scan.model_copy(update={"settle_s": 0.0}),
+            "simulation": settings.simulation.model_copy(update={"is_instant": False}),
+        }
+    )
+
+
+def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
+    """Choose reachable views that would show more of what a finished scan left hidden; takes up to 6 s.
+
+    Args:
+        scan_folder: of the scan, taken in this cell.
+        settings: the cell; nothing of it is connected.
+
+    Raises:
+        PoursightError: the scan cannot be read.
+    """
+    from core.quality.cavity import coarse_volume, find_hidden_cavity
+    from core.scan import read_scan
+    from hardware.scanning.next_best_views import propose
+
+    scan = read_scan(scan_folder, Reporter())
+    volume = coarse_volume(scan, settings.place.crop_box)
+    n_hidden = len(find_hidden_cavity(volume, settings.place.platform_height_m).region)
+    if n_hidden == 0:
+        return Proposal(0, 0.0)
+    height, width = scan.frames[0].depth_m.shape
+    proposals = propose(_unconnected(settings), volume, scan.intrinsics, (width, height))
+    return Proposal(len(proposals), sum(n_revealed for _, n_revealed in proposals) / n_hidden)
+
+
+def object_mesh(source: str, reporter: Reporter) -> TriangleMesh:
+    """Return a built-in object by its name, or a mesh from its file.
+
+    Raises:
+        InputError: there is no such object, or the file cannot be used.
+    """
+    from core.mesh_file import read_mesh
+    from hardware.simulation.objects import BUILTIN_OBJECTS, builtin_object
+
+    path = Path(source)
+    if source in BUILTIN_OBJECTS or not (path.suffix or path.exists()):
+        return builtin_object(source)
+    return read_mesh(path, reporter)
+
+
+def _origin(
+    settings: CellSettings, source: str | None, mesh: TriangleMesh | None, seed: int
+) -> dict[str, Any]:
+    """Which scan this is, as plain JSON: two scans of one origin in a simulated cell are the same."""
+    origin: dict[str, Any] = {
+        "cell": json.loads(settings.model_dump_json()),
+        "table_height_m": settings.place.table_height_m,
+    }
+    if mesh is not None:
+        content = mesh.vertices_m.tobytes() + mesh.faces.tobytes()
+        origin |= {"object": source, "object_sha256": hashlib.sha256(content).hexdigest(), "seed": seed}
+    return origin
+
+
+def _unconnected(settings: CellSettings) -> Cell:
+    """The cell with its arm and obstacles; a simulated one has nothing on its platform."""
+    import numpy as np
+
+    from hardware.cell import open_cell
+    from hardware.simulation.world import World
+
+    if not settings.is_simulated:
+        return open_cell(settings)
+    table_m = np.array([*settings.place.platform_center_m[:2], settings.place.table_height_m])
+    return open_cell(settings, World(None, table_m))

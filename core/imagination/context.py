@@ -1,0 +1,99 @@
+"""What every imagination works with: its parameters, where it computes, and what several of them share."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+from weakref import finalize
+
+from core.collision import CollisionModel
+from core.imagination.body import BodyFile, write_body
+from core.imagination.cup import cup_parts
+from core.imagination.object_at_rest import ObjectAtRest
+from core.parameters import Parameters
+from core.parameters.bodies import CupParameters
+from core.progress import Reporter
+from core.workers import Task, TaskRunner
+
+
+class BodyFiles:
+    """The bodies that the workers read, each written once, in a folder that lives as long as this."""
+
+    def __init__(self) -> None:
+        self._folder: Path | None = None
+        self._objects: dict[int, tuple[CollisionModel, BodyFile]] = {}
+        self._cups: dict[CupParameters, BodyFile] = {}
+
+    def of_object(self, model: CollisionModel) -> BodyFile:
+        """Return the file of an object's body."""
+        if id(model) not in self._objects:
+            path = self._new(f"object_{len(self._objects)}")
+            # The model is kept, so that no other one takes its identity.
+            self._objects[id(model)] = model, write_body(path, model.parts, not model.is_convex)
+        return self._objects[id(model)][1]
+
+    def of_cup(self, cup: CupParameters) -> BodyFile:
+        """Return the file of a cup."""
+        if cup not in self._cups:
+            self._cups[cup] = write_body(self._new(f"cup_{len(self._cups)}"), cup_parts(cup), False)
+        return self._cups[cup]
+
+    def _new(self, name: str) -> Path:
+        if self._folder is None:
+            self._folder = Path(tempfile.mkdtemp(prefix="poursight-"))
+            finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
+        return self._folder / f"{name}.obj"
+
+
+SpareTask = tuple[Task, Callable[[Any], None]]
+"""A task that something later will want, and what takes its result."""
+
+
+@dataclass(frozen=True)
+class ImaginationContext:
+    """One imagination's parameters, workers and shared bodies.
+
+    Attributes:
+        parameters: those that the imagination reads.
+        runner: where to compute.
+        reporter: receives the progress.
+        bodies: shared by all imaginations of a run.
+        spare: fills processors that the next tasks leave idle; emptied by them.
+    """
+
+    parameters: Parameters
+    runner: TaskRunner
+    reporter: Reporter
+    bodies: BodyFiles = field(default_factory=BodyFiles)
+    spare: list[SpareTask] = field(default_factory=list)
+
+    def reading(self, parameters: Parameters) -> ImaginationContext:
+        """Return the same with other parameters."""
+        return replace(self, parameters=parameters)
+
+    def run(self, tasks: Sequence[Task], stage: str) -> list[Any]:
+        """Run tasks in the workers, the spare ones behind them; return the results of `tasks` in order.
+
+        Raises:
+            Cancelled: somebody asked to stop.
+            WorkerError: a worker died.
+        """
+        spare = list(self.spare)
+        self.spare.clear()
+        results = self.runner.run([*tasks, *(task for task, _ in spare)], stage, self.reporter)
+        for (_, take), result in zip(spare, results[len(tasks) :], strict=True):
+            take(result)
+        return results[: len(tasks)]
+
+    def target(self, model: CollisionModel) -> ObjectAtRest:
+        """Return what the physics needs to know of an object that rests where it was scanned."""
+        margin_m = self.parameters.collision.aabb_margin_m
+        return ObjectAtRest.of(model.surface, self.bodies.of_object(model), margin_m)
+
+    def cup(self) -> BodyFile:
+        """Return the body of the cup."""
+        return self.bodies.of_cup(self.parameters.pouring.cup)

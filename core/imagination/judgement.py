@@ -1,0 +1,100 @@
+"""The verdict on an object: what it holds and how firmly (decision 0015), or Omega alone (Sec. III-A)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from core.collision import CollisionModel
+from core.files import read_json, write_json
+from core.imagination.capacity.basin import ML
+from core.imagination.capacity.imagine import imagine_capacity
+from core.imagination.capacity.result import Capacity
+from core.imagination.context import ImaginationContext
+from core.imagination.results import Containability, Drop
+from core.imagination.retention.imagine import imagine_retention
+from core.imagination.retention.result import RETENTION_FILE, Retention
+from core.imagination.verdict import Verdict
+from core.mesh import TriangleMesh
+from core.mesh_topology import hull_volume_m3
+
+JUDGEMENT_FILE = "judgement.json"
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What follows from the drop.
+
+    Attributes:
+        omega_threshold: Omega_thr that Omega is held against.
+        verdict: by what the object holds; none if Omega decides.
+        capacity: none if Omega decides, or nothing stayed in the drop.
+        retention: the same.
+    """
+
+    omega_threshold: float
+    verdict: Verdict | None = None
+    capacity: Capacity | None = None
+    retention: Retention | None = None
+
+    def of(self, drop: Drop) -> Containability:
+        """Return the drop that was judged, with the verdict."""
+        return drop.judged(self.omega_threshold, self.verdict)
+
+    def save(self, folder: Path) -> None:
+        """Write `judgement.json`, and the files of capacity and retention if these were imagined."""
+        verdict = None if self.verdict is None else self.verdict.to_table()
+        write_json(folder / JUDGEMENT_FILE, {"omega_threshold": self.omega_threshold, "verdict": verdict})
+        for found in (self.capacity, self.retention):
+            if found is not None:
+                found.save(folder)
+
+    @classmethod
+    def load(cls, folder: Path) -> Judgement:
+        """Read what `save` wrote."""
+        return cls.from_table(read_json(folder / JUDGEMENT_FILE), folder)
+
+    @classmethod
+    def from_table(cls, table: dict[str, Any], folder: Path) -> Judgement:
+        """Read a table with threshold and verdict, and the files beside it."""
+        verdict, is_filled = table.get("verdict"), (folder / RETENTION_FILE).is_file()
+        return cls(
+            table["omega_threshold"],
+            None if verdict is None else Verdict.from_table(verdict),
+            Capacity.load(folder) if is_filled else None,
+            Retention.load(folder) if is_filled else None,
+        )
+
+
+def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Judgement:
+    """Find what an object holds and how firmly, if that decides and any candy stayed in the drop."""
+    settings = context.parameters.containability
+    if settings.verdict == "omega":
+        return Judgement(settings.omega_threshold)
+    if drop.footprint is None:
+        nothing = Verdict(0.0, settings.capacity_threshold, 0.0, 0.0, 0, 0.0)
+        return Judgement(settings.omega_threshold, nothing)
+    capacity = imagine_capacity(context, model, drop)
+    retention = imagine_retention(context, model, drop)
+    verdict = Verdict(
+        _share(model.surface, capacity),
+        settings.capacity_threshold,
+        capacity.n_candies,
+        float(capacity.bulk_ml),
+        retention.n_load,
+        retention.holds_rad,
+    )
+    return Judgement(settings.omega_threshold, verdict, capacity, retention)
+
+
+def capacity_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:
+    """Return the `capacity_share` of the verdict that `judge` reaches, without the retention."""
+    if drop.footprint is None:
+        return 0.0
+    return _share(model.surface, imagine_capacity(context, model, drop))
+
+
+def _share(surface: TriangleMesh, capacity: Capacity) -> float:
+    hull_ml = ML * hull_volume_m3(surface)
+    return float(capacity.bulk_ml) / hull_ml if hull_ml > 0 else 0.0

@@ -1,1 +1,0 @@
-"""How surely each pour spills nothing: pours imagined again with errors of the set-up."""

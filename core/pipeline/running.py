@@ -1,0 +1,260 @@
+"""How each stage runs and where its result is kept: the other half of the table in `core.stages`.
+
+A run gets what it was promised and nothing else: the results of its inputs, and its part of the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+
+from core.collision import CollisionModel, build_collision_model
+from core.imagination.amount.reasoning import plan_amount
+from core.imagination.amount.result import PlannedAmount
+from core.imagination.choice import choose_pour
+from core.imagination.context import BodyFiles, ImaginationContext, SpareTask
+from core.imagination.drop import imagine_drop
+from core.imagination.judgement import Judgement, judge
+from core.imagination.packing import CupRuns
+from core.imagination.pours import imagine_pours
+from core.imagination.rendering.evidence import Evidence
+from core.imagination.rendering.render import render_evidence
+from core.imagination.rendering.shapes import cup_surface
+from core.imagination.results import POURS_FILE, Drop, PourGrid
+from core.imagination.risk import Tries, imagine_risk, try_pours, with_scan_error
+from core.motion.pour.cell import PourCell
+from core.motion.pour.feasibility import PourMotions, feasible_pours
+from core.motion.pour.planning import judge_pours
+from core.parameters import Parameters
+from core.pipeline.given_mesh import GivenMesh
+from core.pipeline.jobs import collision_job, quality_job, reconstruction_job
+from core.progress import Reporter
+from core.quality.measures import ScanQuality
+from core.reconstruction.result import Reconstruction
+from core.stages import MESH, SCAN
+from core.workers import RunHere, Task, TaskRunner
+
+
+@dataclass
+class Tools:
+    """What all stages of a run share.
+
+    Attributes:
+        runner: where to compute.
+        reporter: receives progress and warnings.
+        bodies: files of the bodies, each written once.
+        cup_runs: runs of the cup alone.
+        early: takes each still as soon as it is drawn; none: nobody waits for one.
+        cell: whose arm shall pour; none: nobody asks about an arm.
+        spare: what idle processors may compute already.
+    """
+
+    runner: TaskRunner
+    reporter: Reporter
+    bodies: BodyFiles = field(default_factory=BodyFiles)
+    cup_runs: CupRuns = field(default_factory=CupRuns)
+    early: Path | None = None
+    cell: PourCell | None = None
+    spare: list[SpareTask] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Given:
+    """What one run is handed.
+
+    Attributes:
+        parameters: the part that the stage reads.
+        result: returns the result of one of its inputs, by name.
+        source: which input is the surface.
+        folder: of the session, for stages that read the scan; none without a session.
+        scan_facts: what is known of the scan besides its views.
+        tools: shared by all stages.
+        context: of the imaginations, with the stage's part of the parameters.
+    """
+
+    parameters: Parameters
+    result: Callable[[str], Any]
+    source: str
+    folder: Path | None
+    scan_facts: dict[str, Any]
+    tools: Tools
+    context: ImaginationContext
+
+    @property
+    def surface(self) -> Reconstruction | GivenMesh:
+        """The object's surface, reconstructed or given."""
+        found: Reconstruction | GivenMesh = self.result(self.source)
+        return found
+
+    def in_worker(self, task: Task, label: str) -> Any:
+        """Run a task that returns its result and its warnings, and pass the warnings on."""
+        result, warnings = self.tools.runner.run([task], label, self.tools.reporter)[0]
+        for sentence in warnings:
+            self.tools.reporter.warn(sentence)
+        return result
+
+
+class Result(Protocol):
+    """What a stage hands on, as far as the pipeline is concerned."""
+
+    def save(self, folder: Path) -> None:
+        """Write it into an empty folder."""
+
+
+@dataclass(frozen=True)
+class StageRun:
+    """How one stage runs.
+
+    Attributes:
+        run: makes the result; none is a result, too: there was nothing to do.
+        load: reads what the result's `save` wrote.
+    """
+
+    run: Callable[[Given], Result | None]
+    load: Callable[[Path], Any]
+
+
+def _given(_: Given) -> Result | None:
+    """What comes from outside is imported, not run."""
+    raise ValueError("a given stage is not run")
+
+
+def _reconstruct(given: Given) -> Reconstruction:
+    assert given.folder is not None, "a scan is read from its session"
+    settings = given.parameters.reconstruction
+    result: Reconstruction = given.in_worker(
+        Task(reconstruction_job, (given.folder / SCAN, settings)), "reconstruction"
+    )
+    return result
+
+
+def _assess(given: Given) -> ScanQuality:
+    assert given.folder is not None, "a scan is read from its session"
+    folders = given.folder / SCAN, given.folder / "reconstruction"
+    table_height_m = given.scan_facts.get("table_height_m")
+    task = Task(quality_job, (*folders, given.parameters.reconstruction, table_height_m))
+    result: ScanQuality = given.in_worker(task, "quality")
+    return result
+
+
+def _collide(given: Given) -> CollisionModel:
+    surface, settings = given.surface, given.parameters.collision
+    if isinstance(surface, GivenMesh) and surface.parts is not None and settings.method != "exact":
+        return surface.parts
+    if isinstance(given.tools.runner, RunHere):
+        return build_collision_model(surface.mesh, settings, given.tools.reporter)
+    model: CollisionModel = given.in_worker(Task(collision_job, (surface.mesh, settings)), "collision")
+    return model
+
+
+def _drop(given: Given) -> Drop:
+    return imagine_drop(given.context, given.result("collision"))
+
+
+def _judge(given: Given) -> Judgement:
+    return judge(given.context, given.result("collision"), given.result("containability"))
+
+
+def _plan_amount(given: Given) -> PlannedAmount:
+    return plan_amount(given.result("judgement").capacity, given.parameters)
+
+
+def _pour(given: Given) -> PourGrid | None:
+    drop: Drop = given.result("containability")
+    found = given.result("judgement").of(drop)
+    if not found.is_open_container or drop.footprint is None:
+        return None
+    planned: PlannedAmount = given.result("amount")
+    context = given.context.reading(with_n_pour(given.parameters, planned.n_pour))
+    return imagine_pours(context, given.result("collision"), drop.footprint, given.tools.cup_runs)
+
+
+def _try_pours(given: Given) -> Tries:
+    grid: PourGrid | None = given.result("pouring")
+    if grid is None:
+        return Tries(None, None)
+    context = given.context.reading(parameters_of_tries(given, grid))
+    return try_pours(context, given.result("collision"), grid, given.tools.cup_runs)
+
+
+def _judge_motions(given: Given) -> PourMotions | None:
+    grid: PourGrid | None = given.result("pouring")
+    tries: Tries = given.result("risk")
+    if grid is None or tries.choice is None:
+        return None
+    cell = given.tools.cell
+    assert cell is not None, "motions are those of a cell's arm"
+    parameters = parameters_of_tries(given, grid)
+    free_choice, pouring = tries.choice, parameters.pouring
+    pours = judge_pours(
+        cell,
+        given.result("containability").aabb_m,
+        grid.theta_rad,
+        grid.pivot_m,
+        pouring,
+        np.array(cell.home_rad),
+        given.tools.runner,
+        given.tools.reporter,
+    )
+    feasible = feasible_pours(pours, grid)
+    if feasible[free_choice.i, free_choice.j]:
+        return PourMotions(pours, free_choice, free_choice, None)
+    # Further tries of pours that the arm can make, until one is sure.
+    context, model = given.context.reading(parameters), given.result("collision")
+    risk = imagine_risk(context, model, grid, given.tools.cup_runs, tries.risk, feasible)
+    return PourMotions(pours, choose_pour(grid, pouring.cup, feasible, risk), free_choice, risk)
+
+
+def _render(given: Given) -> Evidence:
+    drop, grid = given.result("containability"), given.result("pouring")
+    parameters = given.parameters if grid is None else with_n_pour(given.parameters, grid.n_pour)
+    return render_evidence(
+        given.surface.mesh,
+        cup_surface(parameters.pouring.cup),
+        parameters,
+        given.result("judgement").of(drop),
+        grid,
+        given.result("risk").choice,
+        given.tools.runner,
+        given.tools.reporter,
+        given.tools.early,
+    )
+
+
+def parameters_of_tries(given: Given, grid: PourGrid) -> Parameters:
+    """Return what pours are tried with: the imagined N_pour, and errors that this scan's poses leave."""
+    parameters, surface = with_n_pour(given.parameters, grid.n_pour), given.surface
+    if not isinstance(surface, Reconstruction):
+        return parameters
+    health = surface.pose_health
+    return with_scan_error(parameters, health.sd_height_m, len(health.views))
+
+
+def with_n_pour(parameters: Parameters, n_pour: int) -> Parameters:
+    """Return the parameters with an N_pour."""
+    pouring = parameters.pouring.model_copy(update={"n_pour": n_pour})
+    return parameters.model_copy(update={"pouring": pouring})
+
+
+def _load_pours(folder: Path) -> PourGrid | None:
+    return PourGrid.load(folder) if (folder / POURS_FILE).is_file() else None
+
+
+RUNS: dict[str, StageRun] = {
+    MESH: StageRun(_given, GivenMesh.load),
+    "reconstruction": StageRun(_reconstruct, Reconstruction.load),
+    "quality": StageRun(_assess, ScanQuality.load),
+    "collision": StageRun(_collide, CollisionModel.load),
+    "containability": StageRun(_drop, Drop.load),
+    "judgement": StageRun(_judge, Judgement.load),
+    "amount": StageRun(_plan_amount, PlannedAmount.load),
+    "pouring": StageRun(_pour, _load_pours),
+    "risk": StageRun(_try_pours, Tries.load),
+    "motion": StageRun(_judge_motions, PourMotions.load),
+    "evidence": StageRun(_render, Evidence.load),
+}
+"""By the stages' names; a test asserts that these are those of the table."""

@@ -1,0 +1,141 @@
+"""A cell's devices by the kinds that its file names.
+
+A new camera, arm or gripper is a driver of its own, a kind in `settings`, and a row here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TypeVar
+
+from core.errors import InputError
+from hardware.cameras.openni import OpenNICamera
+from hardware.cameras.realsense import RealSenseCamera
+from hardware.cameras.replay import ReplayCamera
+from hardware.cameras.simulated import SimulatedCamera
+from hardware.cell.settings import ARMS, CameraSettings, CellSettings, GripperSettings
+from hardware.grippers.simulated import SimulatedGripper
+from hardware.grippers.tool_output import ToolOutputGripper
+from hardware.interfaces import Camera, Gripper, Robot
+from hardware.robots.kinematic import KinematicRobot
+from hardware.robots.replay import ReplayRobot
+from hardware.robots.ur.robot import UR5Robot
+from hardware.simulation.world import World
+
+Builder = TypeVar("Builder")
+
+
+def ur_robot(settings: CellSettings, address: str | None = None, name: str | None = None) -> UR5Robot:
+    """Build the driver of a cell's UR arm; nothing is connected before it is entered.
+
+    Args:
+        settings: what the cell's file says.
+        address: the controller's; the one in the file if left out.
+        name: what people call it; model and address without one.
+    """
+    gripper = settings.gripper
+    address = address or settings.robot.address
+    assert address is not None, "checked by the validator for ur5"
+    return UR5Robot(
+        ARMS[settings.robot.model],
+        address,
+        gripper.grasp_pose,
+        gripper.payload_kg,
+        gripper.payload_center_m,
+        gripper.voltage_v if gripper.kind == "ur5" else None,
+        name=name,
+    )
+
+
+def real_arm(settings: CellSettings) -> UR5Robot:
+    """Build the driver of a cell's real arm; nothing is connected before it is entered.
+
+    Raises:
+        InputError: there is no driver for its kind.
+    """
+    if settings.robot.kind not in _REAL_ARMS:
+        raise _unknown_kind("robot", settings.robot.kind, _ROBOTS)
+    return _REAL_ARMS[settings.robot.kind](settings)
+
+
+def real_camera(settings: CellSettings) -> Camera:
+    """Build the cell's camera, which is not simulated; nothing is connected before it is entered.
+
+    Raises:
+        InputError: there is no driver for its kind.
+    """
+    return _of_kind(_CAMERAS, "camera", settings.camera.kind)(settings.camera)
+
+
+def real_gripper(settings: CellSettings, robot: UR5Robot) -> Gripper:
+    """Build the gripper in a real arm's hand; one of kind 'simulated' holds nothing.
+
+    Raises:
+        InputError: there is no driver for its kind.
+    """
+    return _of_kind(_GRIPPERS, "gripper", settings.gripper.kind)(settings.gripper, robot)
+
+
+def tool_output_gripper(settings: GripperSettings, robot: UR5Robot, speed_up: float = 1.0) -> Gripper:
+    """Build a gripper at a tool output; a simulated controller may run some times faster than the clock."""
+    return ToolOutputGripper(robot, settings.output, settings.action_s / speed_up)
+
+
+def scan_devices(settings: CellSettings, world: World | None, seed: int) -> tuple[Camera, Robot, Gripper]:
+    """Build what takes part in a scan; nothing is connected before it is entered.
+
+    Args:
+        settings: what the cell's file says.
+        world: what a simulated camera looks at; none for another camera.
+        seed: of a simulated camera's noise.
+
+    Raises:
+        InputError: there is no driver for a device's kind.
+    """
+    if world is not None:
+        arm = _kinematic(settings)
+        noise = None if settings.simulation.is_perfect else settings.simulation.noise
+        return SimulatedCamera(world, arm, settings.camera.pose, noise, seed), arm, SimulatedGripper()
+    camera = real_camera(settings)
+    if isinstance(camera, ReplayCamera):
+        return camera, ReplayRobot(camera, settings.camera.pose), SimulatedGripper()
+    robot = _of_kind(_ROBOTS, "robot", settings.robot.kind)(settings)
+    gripper = real_gripper(settings, robot) if isinstance(robot, UR5Robot) else SimulatedGripper()
+    return camera, robot, gripper
+
+
+def _unknown_kind(device: str, kind: str, known: Iterable[str]) -> InputError:
+    return InputError(
+        f"There is no driver for a {device} of kind '{kind}' here; choose one of {', '.join(known)} in the "
+        "cell file."
+    )
+
+
+def _of_kind(builders: Mapping[str, Builder], device: str, kind: str) -> Builder:
+    if kind not in builders:
+        raise _unknown_kind(device, kind, builders)
+    return builders[kind]
+
+
+def _kinematic(settings: CellSettings) -> KinematicRobot:
+    robot = settings.robot
+    return KinematicRobot(
+        ARMS[robot.model], robot.home_rad, settings.simulation.is_instant, settings.gripper.grasp_pose
+    )
+
+
+_CAMERAS: dict[str, Callable[[CameraSettings], Camera]] = {
+    "realsense": lambda camera: RealSenseCamera(camera.serial, camera.recording),
+    "openni": lambda camera: OpenNICamera(camera.calibrated_intrinsics),
+    "replay": lambda camera: ReplayCamera(camera.replayed),
+}
+"""All but the simulated one, which sees a world from a simulated arm."""
+
+_REAL_ARMS: dict[str, Callable[[CellSettings], UR5Robot]] = {"ur5": ur_robot}
+_ROBOTS: dict[str, Callable[[CellSettings], Robot]] = {"simulated": _kinematic, **_REAL_ARMS}
+"""All but the arm of a recorded scan, which follows its camera."""
+
+_GRIPPERS: dict[str, Callable[[GripperSettings, UR5Robot], Gripper]] = {
+    "simulated": lambda _settings, _robot: SimulatedGripper(),
+    "ur5": tool_output_gripper,
+}

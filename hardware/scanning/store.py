@@ -1,0 +1,155 @@
+"""A scan in progress on the disk: every view is there, whole, before the arm moves on.
+
+The folder holds the authors' layout and `views.json`, so that what was taken before a crash, a kill or a full
+disk can be continued.
+"""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from core.errors import Remedy, SessionError
+from core.files import read_json, write_json
+from core.progress import Reporter
+from core.scan import RgbdFrame, Scan, read_scan, write_camera, write_frame
+from core.scan.authors_layout import ENDINGS, FRAMES_FOLDER
+from core.scan.model import CropBox, Intrinsics
+from core.session import explained
+from core.session.record import RECORD_FILE
+from hardware.scanning.views import PlannedView, ViewRecord, ViewState
+
+VIEWS_FILE = "views.json"
+
+
+class ScanStore:
+    """Writes views as they come and gives back those of an interrupted scan.
+
+    Attributes:
+        folder: where they are.
+    """
+
+    def __init__(self, folder: Path, origin: dict[str, Any]) -> None:
+        """`origin` says, as plain JSON, which scan this is: views of another one are refused."""
+        self.folder = folder
+        self._origin = origin
+        self._camera: Intrinsics | None = None
+
+    def begin(self, platform_height_m: float, crop_box: CropBox) -> list[ViewRecord]:
+        """Prepare the folder and return what became of the views of an interrupted scan.
+
+        Raises:
+            SessionError: the folder holds views of another scan, or cannot be written.
+        """
+        self._place = platform_height_m, crop_box
+        with explained(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+        if not (self.folder / VIEWS_FILE).exists():
+            return []
+        table = read_json(self.folder / VIEWS_FILE)
+        records = _records(table)
+        if table.get("origin") != self._origin:
+            n_taken = sum(record.has_image for record in records)
+            raise SessionError(
+                f"{self.folder} holds views of another scan ({n_taken}, of another cell, object or seed); "
+                "finish that one first, or discard them.",
+                Remedy.RESTART_SCAN,
+            )
+        return records
+
+    def recover(self, records: list[ViewRecord]) -> Scan | None:
+        """Read the images of an interrupted scan; views not recorded or not whole are removed."""
+        images = self.folder / FRAMES_FOLDER
+        names = [record.view.name for record in records if record.has_image]
+        recorded = {name for name in names if all((images / (name + end)).exists() for end in ENDINGS)}
+        for path in images.glob("*"):
+            if path.name.split(".")[0] not in recorded:
+                path.unlink()
+        if not recorded:
+            return None
+        scan = read_scan(self.folder, Reporter())
+        self._camera = scan.intrinsics
+        return scan
+
+    def adopt(self, finished: Path) -> None:
+        """Begin with the views of a finished scan, to take more or some of them again.
+
+        Raises:
+            SessionError: the folder cannot be written.
+        """
+        with explained(self.folder):
+            shutil.copytree(
+                finished, self.folder, ignore=shutil.ignore_patterns(RECORD_FILE, "warnings.json")
+            )
+
+    def publish(self, stage: Path) -> None:
+        """Copy everything into a stage's empty folder."""
+        shutil.copytree(self.folder, stage, dirs_exist_ok=True)
+
+    def remove(self) -> None:
+        """Throw everything away."""
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def write_view(self, frame: RgbdFrame, intrinsics: Intrinsics, records: list[ViewRecord]) -> None:
+        """Write a view, and what became of all so far.
+
+        Raises:
+            SessionError: the disk is full or may not be written.
+        """
+        with explained(self.folder):
+            if self._camera is None:
+                write_camera(intrinsics, self._place[0], self.folder, self._place[1])
+                self._camera = intrinsics
+            write_frame(frame, self.folder)
+        self.write_records(records)
+
+    def write_records(self, records: list[ViewRecord]) -> None:
+        """Write what became of the views so far."""
+        views = [asdict(record.view) | _outcome(record) for record in records]
+        with explained(self.folder):
+            write_json(self.folder / VIEWS_FILE, {"origin": self._origin, "views": views})
+
+
+def read_views(folder: Path) -> list[ViewRecord]:
+    """Return the views that a finished scan's folder records; none when it was imported.
+
+    Raises:
+        SessionError: the file is damaged.
+    """
+    if not (folder / VIEWS_FILE).exists():
+        return []
+    return _records(read_json(folder / VIEWS_FILE))
+
+
+def read_origin(folder: Path) -> dict[str, Any]:
+    """Return which scan the views in a folder belong to, as given to `ScanStore`; empty if nothing says so.
+
+    Raises:
+        SessionError: the file is damaged.
+    """
+    if not (folder / VIEWS_FILE).exists():
+        return {}
+    origin = read_json(folder / VIEWS_FILE).get("origin")
+    return origin if isinstance(origin, dict) else {}
+
+
+def _outcome(record: ViewRecord) -> dict[str, Any]:
+    return {"state": record.state.value, "problems": list(record.problems)}
+
+
+def _records(table: dict[str, Any]) -> list[ViewRecord]:
+    try:
+        return [
+            ViewRecord(
+                PlannedView(str(view["name"]), tuple(map(float, view["joints_rad"]))),
+                ViewState(view["state"]),
+                tuple(view["problems"]),
+            )
+            for view in table["views"]
+        ]
+    except (KeyError, TypeError, ValueError) as error:
+        raise SessionError(
+            f"{VIEWS_FILE} of the scan is damaged ({error!r}).", Remedy.RESTART_SCAN
+        ) from error

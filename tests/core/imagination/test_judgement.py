@@ -1,0 +1,75 @@
+import pytest
+
+from core.imagination.judgement import Judgement
+from core.parameters import apply_settings
+from core.pipeline.in_memory import imagine
+from core.progress import Reporter
+
+FEW = {
+    "containability.verdict": "capacity",
+    "particle.shape": "ellipsoid",
+    "particle.diameter_m": 0.0132,
+    "particle.height_m": 0.007,
+    "particle.mass_kg": 0.0009,
+    "containability.contact.lateral_friction": 0.2,
+    "capacity.n_fillings": 1,
+    "holding.n_load": 6,
+    "holding.tilt_step_rad": 0.2,
+    "risk.n_tries": 0,
+    "pouring.n_packings": 1,
+}
+
+
+@pytest.fixture(scope="module")
+def few(quick):
+    return apply_settings(quick, FEW)
+
+
+@pytest.fixture(scope="module")
+def dish_judged(dish, few, pool):
+    return imagine(dish, few, pool, Reporter())
+
+
+def test_a_dish_is_a_container_for_most_of_it_is_room(dish_judged):
+    verdict = dish_judged.containability.verdict
+    assert verdict.is_container
+    room_ml, hull_ml = 90 * 50 * 35 / 1000, 100 * 60 * 40 / 1000
+    assert verdict.capacity_share == pytest.approx(room_ml / hull_ml, rel=0.25)
+    assert verdict.volume_ml == pytest.approx(room_ml, rel=0.25)
+    assert verdict.holds_rad > 0.3
+    assert dish_judged.grid is not None
+
+
+def test_a_block_is_none_though_some_candies_lie_on_it(block, few, pool):
+    still = {"containability.rotation_rad": 0.0, "containability.contact.lateral_friction": 1.0}
+    found = imagine(block, apply_settings(few, still), pool, Reporter())
+    assert not found.containability.is_open_container
+    assert found.containability.verdict.capacity_share < 0.02
+    assert found.grid is None
+
+
+def test_the_threshold_decides_and_omega_is_told_beside(dish_judged, dish, few, pool):
+    strict = apply_settings(few, {"containability.capacity_threshold": 0.95})
+    found = imagine(dish, strict, pool, Reporter()).containability
+    assert not found.is_open_container
+    assert found.exceeds_omega
+    assert found.omega == dish_judged.containability.omega
+
+
+def test_by_the_papers_rule_nothing_is_filled(dish, few, pool):
+    by_omega = apply_settings(few, {"containability.verdict": "omega"})
+    found = imagine(dish, by_omega, pool, Reporter())
+    assert (found.capacity, found.retention, found.containability.verdict) == (None, None, None)
+    assert found.containability.is_open_container == found.containability.exceeds_omega
+
+
+def test_a_judgement_survives_the_disk(dish_judged, tmp_path):
+    found = dish_judged.containability
+    judged = Judgement(found.omega_threshold, found.verdict, dish_judged.capacity, dish_judged.retention)
+    for case, folder in ((judged, tmp_path / "by_capacity"), (Judgement(0.1), tmp_path / "by_omega")):
+        folder.mkdir()
+        case.save(folder)
+        again = Judgement.load(folder)
+        assert (again.omega_threshold, again.verdict) == (case.omega_threshold, case.verdict)
+        assert (again.capacity is None) == (case.capacity is None)
+        assert (again.retention is None) == (case.retention is None)

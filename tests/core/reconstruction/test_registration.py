@@ -1,0 +1,48 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.reconstruction.registration import STRIDE, facing_image, fit_planes
+from core.scan import Intrinsics
+
+CAMERA = Intrinsics(200.0, 210.0, 49.5, 39.5)
+NORMAL = np.array([0.3, -0.5, -1.0]) / np.linalg.norm([0.3, -0.5, -1.0])
+DISTANCE_M = 0.6
+
+
+def slope() -> np.ndarray:
+    """Depth of the plane with `-NORMAL . p = DISTANCE_M`."""
+    columns, rows = np.meshgrid(np.arange(100), np.arange(80))
+    rays = np.stack(
+        [(columns - CAMERA.cx) / CAMERA.fx, (rows - CAMERA.cy) / CAMERA.fy, np.ones((80, 100))], -1
+    )
+    return (DISTANCE_M / (rays @ -NORMAL)).astype(np.float32)
+
+
+def test_a_plane_is_found_and_what_it_faces():
+    planes = fit_planes(slope(), CAMERA, 6.0)
+    assert planes.shape == (40, 50, 3)
+    assert np.nanmax(np.abs(planes - -NORMAL / DISTANCE_M)) < 1e-3
+    assert np.isfinite(planes[2:-2, 2:-2]).all()
+    facing = facing_image(planes, (80, 100), CAMERA)
+    middle = facing[40, 50]
+    assert middle == pytest.approx(-NORMAL[2], abs=0.01)  # the middle pixel looks along the axis
+
+
+def test_beside_an_edge_and_without_depth_there_is_no_plane():
+    depth_m = np.full((80, 100), 0.6, dtype=np.float32)
+    depth_m[:, 50:] = 0.5
+    depth_m[:20] = 0
+    planes = fit_planes(depth_m, CAMERA, 6.0)
+    assert np.isnan(planes[: 20 // STRIDE]).all()
+    assert np.isfinite(planes[30, 10]).all()
+    assert np.isnan(planes[30, 49 // STRIDE]).any() or np.abs(planes[30, 49 // STRIDE, 2] - 1 / 0.6) < 1e-3
+    assert np.isnan(fit_planes(depth_m, CAMERA, 0.4)).all()
+
+
+@pytest.mark.parametrize("shape", [(79, 99), (1, 1), (80, 101)])
+def test_any_size_of_image(shape):
+    depth_m = np.full(shape, 0.6, dtype=np.float32)
+    facing = facing_image(fit_planes(depth_m, CAMERA, 6.0), shape, CAMERA)
+    assert facing.shape == shape and np.isfinite(facing).all()

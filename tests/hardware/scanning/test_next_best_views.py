@@ -1,0 +1,67 @@
+"""The paper's future work: views that see the inside of an opening that the scan did not."""
+
+import numpy as np
+import open3d as o3d
+import pytest
+
+from core.mesh import TriangleMesh
+from core.motion.clearance import MotionScene
+from core.parameters.reconstruction import ReconstructionParameters
+from core.progress import Reporter
+from core.reconstruction.stage import reconstruct
+from core.scan import Scan
+from hardware.cell import open_cell, read_cell
+from hardware.scanning.next_best_views import propose, take_next_best_views
+from hardware.scanning.procedure import ScanProcedure
+from hardware.scanning.views import name_views
+from hardware.simulation.objects import builtin_object
+from hardware.simulation.placing import world_with
+from tests.core.quality.studio import tube
+
+pytestmark = pytest.mark.system
+
+DEPTH_M = 0.2
+SEED = 2
+CELL = read_cell()
+
+
+def scanning(mesh: TriangleMesh, seed: int):
+    return open_cell(CELL, world_with(mesh, CELL.place, seed), seed)
+
+
+def depth_m(scan: Scan) -> float:
+    """Median depth below the rim, of the reconstruction, within 8 mm of its opening's middle."""
+    mesh = reconstruct(scan, ReconstructionParameters(), Reporter()).mesh
+    top = float(mesh.aabb_max_m[2])
+    rim = mesh.vertices_m[mesh.vertices_m[:, 2] > top - 0.004, :2]
+    x, y = np.meshgrid(np.linspace(-0.008, 0.008, 9), np.linspace(-0.008, 0.008, 9))
+    middle = (rim.min(axis=0) + rim.max(axis=0)) / 2
+    rays = np.stack([middle[0] + x, middle[1] + y, 0 * x + top, 0 * x, 0 * x, 0 * x - 1], axis=-1)
+    scene = o3d.t.geometry.RaycastingScene()
+    scene.add_triangles(
+        o3d.core.Tensor(mesh.vertices_m.astype(np.float32)), o3d.core.Tensor(mesh.faces.astype(np.uint32))
+    )
+    return float(np.median(scene.cast_rays(o3d.core.Tensor(rays.astype(np.float32)))["t_hit"].numpy()))
+
+
+def test_a_narrow_vase_goes_from_a_dent_to_its_true_depth():
+    with scanning(tube(0.04, DEPTH_M), SEED) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad))
+        before_m = depth_m(procedure.scan())
+        n_views = take_next_best_views(cell, procedure)
+        after_m = depth_m(procedure.scan())
+        joints = np.array([record.view.joints_rad for record in procedure.records])
+    assert before_m < DEPTH_M / 2
+    assert after_m == pytest.approx(DEPTH_M, abs=0.01)
+    assert 1 <= n_views <= 6
+    assert len(joints) == 24 + n_views
+    scene: MotionScene = cell.scene
+    assert scene.clearance(joints).distance_m.min() >= CELL.scan.min_clearance_m - 1e-6
+
+
+def test_nothing_is_proposed_where_everything_was_seen():
+    with scanning(builtin_object("bowl"), 0) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad[::2]))
+        assert propose(cell, procedure.volume, *procedure.camera_facts()) == []
