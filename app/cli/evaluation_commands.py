@@ -66,8 +66,8 @@ def evaluate(request: EvaluationRequest, out: Path, workers: int | None, schedul
     engine = LocalEngine(workers) if scheduler is None else DaskEngine(scheduler)
     with TerminalReporter() as reporter:
         evaluation = run_evaluation(request, engine, out, reporter)
-    with explained(out):
-        report = write_outputs(evaluation, out)
+        with explained(out):
+            report = write_outputs(evaluation, out)
     print(text_tables(evaluation))
     print(f"Report: {report}")
 

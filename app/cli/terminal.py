@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
 import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from app.cli.interrupts import Interrupts
 from app.cli.parameters import Choices, print_difference
 from app.cli.remedies import REMEDIES
 from app.operations.session import SessionTask, working_on
@@ -69,6 +68,7 @@ class TerminalReporter(Reporter):
         self._last_line_s: dict[str, float] = {}
         self._progress: Progress | None = None
         self._leaving: threading.Timer | None = None
+        self._interrupts = Interrupts(self._on_interrupt)
         self.warnings: list[str] = []
 
     def __enter__(self) -> TerminalReporter:
@@ -83,14 +83,11 @@ class TerminalReporter(Reporter):
                 console=self._console,
             )
             self._progress.start()
-        self._handlers = {
-            number: signal.signal(number, self._on_interrupt) for number in (signal.SIGINT, signal.SIGTERM)
-        }
+        self._interrupts.__enter__()
         return self
 
     def __exit__(self, *exception: object) -> None:
-        for number, handler in self._handlers.items():
-            signal.signal(number, handler)
+        self._interrupts.__exit__(*exception)
         if self._progress is not None:
             self._progress.stop()
 
@@ -155,7 +152,7 @@ class TerminalReporter(Reporter):
         )
         print(f"{stage}: {100 * fraction:.0f} %{left}", file=sys.stderr, flush=True)
 
-    def _on_interrupt(self, number: int, frame: FrameType | None) -> None:  # noqa: ARG002
+    def _on_interrupt(self) -> None:
         """Ask the work to stop; what does not respond in time (a long call into C) is abandoned."""
         self.cancel()
         self._leaving = threading.Timer(_PATIENCE_S, self._leave)

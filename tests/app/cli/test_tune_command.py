@@ -14,6 +14,7 @@ from core.evaluation.fitting.spills import read_spills
 from core.mesh_file import write_ply
 from core.parameters import Parameters, flatten, load_preset
 from hardware.simulation.objects import builtin_object
+from tests.awake import within
 from tests.patience import HANG_S
 
 pytestmark = pytest.mark.system
@@ -113,11 +114,10 @@ def test_stopped_by_ctrl_c_the_best_is_kept(objects, tmp_path):
         while "trial 1 of 500" not in process.stderr.readline():
             assert process.poll() is None
         time.sleep(1)
-        began_s = time.monotonic()
-        os.kill(process.pid, signal.SIGINT)
-        out_text, err = process.communicate(timeout=HANG_S)
+        with within(5):
+            os.kill(process.pid, signal.SIGINT)
+            out_text, err = process.communicate(timeout=HANG_S)
     assert process.returncode == 0, err
-    assert time.monotonic() - began_s < 5
     assert "the best so far is kept" in err and "Preset:" in out_text
     assert read_provenance(out).search["is_cut_short"] is True
 
