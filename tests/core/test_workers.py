@@ -12,6 +12,7 @@ import pytest
 from core.errors import Cancelled, InputError, WorkerError
 from core.progress import Reporter
 from core.workers import Task, WorkerPool, report_fraction
+from tests.awake import within
 
 
 def square(x):
@@ -92,10 +93,8 @@ def test_cancelling_takes_less_than_two_seconds_even_when_a_task_does_not_listen
     pool.run([Task(square, (1,))], "start", Reporter())
     reporter = Reporter()
     threading.Timer(0.3, reporter.cancel).start()
-    started = time.perf_counter()
-    with pytest.raises(Cancelled):
+    with within(2), pytest.raises(Cancelled):
         pool.run([task] * 3, "sleep", reporter)
-    assert time.perf_counter() - started < 2
     assert pool.run([Task(square, (3,))], "squares", Reporter()) == [9]
 
 
