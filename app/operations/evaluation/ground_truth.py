@@ -12,10 +12,11 @@ from core.geometry import FloatArray
 from core.imagination.cup import pour_angle, pour_duration_s
 from core.imagination.results import PourChoice
 from core.motion.pour.cell import PourCell
-from core.motion.pour.geometry import rotated_cups, upright_rad
+from core.motion.pour.geometry import outer_cone, rotated_cups, upright_rad
 from core.motion.pour.plan import PourTarget, Segment
 from core.motion.pour.planning import plan_pour
 from core.motion.trajectory import JointTrajectory
+from core.parameters.bodies import CupParameters
 from core.parameters.imagination import PouringParameters
 from core.progress import Reporter
 from core.workers import TaskRunner
@@ -25,9 +26,9 @@ from hardware.simulation.pour_outcome.outcome import TableOutcome, simulate_outc
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 
 _DRIVEN = (Segment.TILT, Segment.LOWER, Segment.POUR)
-_TILTED_ABOVE_M = 0.25
-"""The cup is tilted this far above the pour, where neither it nor a candy can touch the object."""
-_TILT_S, _LOWER_S = 2.0, 1.5
+_OVER_M = 0.03
+"""While it is tilted, the cup's lowest point is this far above the pour: as far as an arm's at least is."""
+_TILT_S, _LOWER_S = 2.0, 0.6
 _SAMPLE_S = 0.02
 _POURS_PER_SEED = 1000
 
@@ -108,18 +109,34 @@ def planned_path(
 
 
 def ideal_path(pouring: PouringParameters, pivot_m: FloatArray, theta_rad: float) -> DrivenPath:
-    """The cup's path with an arm without limits: tilted in the air, lowered, rotated as imagined.
+    """The cup's path with an arm without limits: tilted as low as it can be, lowered, rotated as imagined.
 
-    An arm's own path ends in the same rotation, never faster (`core.motion.pour.turning`).
+    An arm's own path ends in the same rotation, never faster (`core.motion.pour.geometry.imagined_rate`).
     """
-    tilting, lowering = _smooth(_TILT_S), _smooth(_LOWER_S)
+    lowered = 1 - _smooth(_LOWER_S)
     times = np.arange(0, pour_duration_s(pouring) + _SAMPLE_S, _SAMPLE_S)
     rotating = np.array([pour_angle(pouring, time)[0] for time in times])
-    gamma = np.concatenate([upright_rad(pouring.cup) * (1 - tilting), np.zeros(len(lowering)), rotating])
-    height = _TILTED_ABOVE_M * np.concatenate([np.ones(len(tilting)), 1 - lowering, np.zeros(len(rotating))])
-    poses = rotated_cups(pouring.cup, pivot_m, theta_rad, gamma)
-    poses[:, 2, 3] += height
-    return DrivenPath(_SAMPLE_S * np.arange(len(gamma), dtype=float), poses)
+    upright_to_ready = upright_rad(pouring.cup) * (1 - _smooth(_TILT_S))
+    tilting = rotated_cups(pouring.cup, pivot_m, theta_rad, upright_to_ready)
+    tilting[:, 2, 3] += _OVER_M + pivot_m[2] - _lowest_m(pouring.cup, tilting)
+    pouring_poses = rotated_cups(
+        pouring.cup, pivot_m, theta_rad, np.concatenate([np.zeros(len(lowered)), rotating])
+    )
+    above_m = tilting[-1, 2, 3] - pouring_poses[0, 2, 3]
+    pouring_poses[: len(lowered), 2, 3] += above_m * lowered
+    poses = np.concatenate([tilting, pouring_poses])
+    return DrivenPath(_SAMPLE_S * np.arange(len(poses), dtype=float), poses)
+
+
+def _lowest_m(cup: CupParameters, T_base_cup: FloatArray) -> FloatArray:
+    """Height (N,) of the cup's lowest point, outside, at poses (N, 4, 4)."""
+    cone = outer_cone(cup)
+    upward = T_base_cup[:, 2, 2]
+    across = np.sqrt(np.clip(1 - upward**2, 0, 1))
+    base = T_base_cup[:, 2, 3] - cone.low_radius_m * across
+    mouth = T_base_cup[:, 2, 3] + cone.height_m * upward - cone.high_radius_m * across
+    lowest: FloatArray = np.minimum(base, mouth)
+    return lowest
 
 
 def _smooth(duration_s: float) -> FloatArray:

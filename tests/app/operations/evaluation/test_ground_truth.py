@@ -37,7 +37,7 @@ def test_the_cup_begins_upright_and_ends_as_imagined():
     )
 
 
-def test_the_cup_is_tilted_high_above_and_then_rotates_about_the_pivot_alone():
+def test_the_cup_is_tilted_just_above_the_pour_and_then_rotates_about_the_pivot_alone():
     path = ideal_path(POURING, PIVOT_M, 0.7)
     pivots = np.array(
         [transform_points(pose, pivot_in_cup_m(POURING.cup)[None])[0] for pose in path.T_base_cup]
@@ -45,8 +45,21 @@ def test_the_cup_is_tilted_high_above_and_then_rotates_about_the_pivot_alone():
     rotating = path.times_s > path.times_s[-1] - pour_duration_s(POURING)
     assert pivots[rotating] == pytest.approx(np.tile(PIVOT_M, (rotating.sum(), 1)), abs=1e-6)
     assert pivots[0, 2] > PIVOT_M[2] + POURING.cup.length_m, "while it lies down it cannot touch the object"
+    on_its_rim = [lowest_m(POURING.cup, pose) for pose in path.T_base_cup[:100]]
+    assert on_its_rim == pytest.approx(100 * [PIVOT_M[2] + 0.03], abs=1e-3), "as low as an arm's"
     steps_m = np.linalg.norm(np.diff(path.T_base_cup[:, :3, 3], axis=0), axis=1)
     assert steps_m.max() / np.diff(path.times_s).min() < 0.5
+
+
+def lowest_m(cup, T_base_cup):
+    """Height of the lowest of many points of both ends."""
+    angles = np.linspace(0, 2 * np.pi, 721)
+    base_m, mouth_m = cup.base_inner_radius_m + cup.wall_m, cup.mouth_radius_m
+    ends = [
+        np.column_stack([r * np.cos(angles), r * np.sin(angles), np.full(len(angles), z)])
+        for r, z in ((base_m, 0.0), (mouth_m, cup.length_m))
+    ]
+    return transform_points(T_base_cup, np.concatenate(ends))[:, 2].min()
 
 
 def test_the_arm_pours_as_imagined_but_no_faster():
