@@ -34,6 +34,8 @@ class Remedy(Enum):
     """Use another cell."""
     START_CLUSTER = "start a cluster"
     """Start the workers that the evaluation shall use."""
+    POUR_ANYWAY = "pour anyway"
+    """Say explicitly that it shall be poured although it is not advised."""
     RESTART_SCAN = "restart the scan"
     """Discard the views that were taken, and scan anew."""
 
@@ -64,6 +66,10 @@ class SessionError(PoursightError):
 
 class StageError(PoursightError):
     """A stage got valid input but could not reach a result with it."""
+
+
+class NotAdvised(StageError):
+    """Nothing is wrong, but a pour is too likely to spill; it has to be asked for explicitly."""
 
 
 class WorkerError(PoursightError):

@@ -17,7 +17,7 @@ from app.operations import pouring
 from app.operations.choosing import choose_pour
 from app.operations.doctor import examine
 from app.operations.outcome import enter_outcome
-from core.errors import Cancelled, InputError, PoursightError
+from core.errors import Cancelled, InputError, NotAdvised, PoursightError, Remedy
 from core.imagination.amount.result import amount_text
 from core.motion.pour.plan import PlannedMove, PourPlan
 from core.motion.pour.planning import plan_pour
@@ -42,11 +42,20 @@ def plan(session: Path, cell_file: Path | None, workers: int | None) -> None:
 
 
 def pour(
-    session: Path, cell_file: Path | None, is_confirmed: bool, is_emptied: bool, workers: int | None
+    session: Path,
+    cell_file: Path | None,
+    is_confirmed: bool,
+    is_doubt_accepted: bool,
+    is_emptied: bool,
+    workers: int | None,
 ) -> None:
     """Pour, after a confirmation; into an object that was emptied the first cup again."""
     terminal = TerminalReporter()
-    operator = PrintingOperator(session) if is_confirmed else TerminalOperator(session, terminal)
+    operator = (
+        PrintingOperator(session, is_doubt_accepted)
+        if is_confirmed
+        else TerminalOperator(session, is_doubt_accepted, terminal)
+    )
     with working(session, NOTHING_CHOSEN, workers, is_existing=True, terminal=terminal) as pipeline:
         if is_emptied:
             note_emptied(pipeline.session.path)
@@ -110,14 +119,20 @@ class PrintingOperator:
 
     is_present = False
 
-    def __init__(self, session: Path) -> None:
-        self._session = session
+    def __init__(self, session: Path, is_doubt_accepted: bool = False) -> None:
+        self._session, self._is_doubt_accepted = session, is_doubt_accepted
 
     def prepared(self, prepared: pouring.PreparedPour) -> None:
         """Print which pour will be made."""
         print(prepared.sentence)
         if prepared.amount is not None:
             print(amount_text(prepared.amount))
+
+    def confirm_doubtful(self, advice: str) -> None:
+        """Print the advice; to ignore it has to be asked for."""
+        if not self._is_doubt_accepted:
+            raise NotAdvised(advice, Remedy.POUR_ANYWAY)
+        print(advice)
 
     def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:  # noqa: ARG002
         """Print the plan."""
@@ -147,9 +162,15 @@ class TerminalOperator(PrintingOperator):
 
     is_present = True
 
-    def __init__(self, session: Path, terminal: TerminalReporter) -> None:
-        super().__init__(session)
+    def __init__(self, session: Path, is_doubt_accepted: bool, terminal: TerminalReporter) -> None:
+        super().__init__(session, is_doubt_accepted)
         self._terminal = terminal
+
+    def confirm_doubtful(self, advice: str) -> None:
+        """Print the advice, and ask unless it was said already that it is to be ignored."""
+        print(advice)
+        if not self._is_doubt_accepted:
+            self._confirm("Pour all the same?")
 
     def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:
         """Print the plan and ask."""

@@ -150,6 +150,9 @@ def pour(
     session: SessionArgument,
     cell: PourCellOption = None,
     yes: Annotated[bool, typer.Option("--yes", help="Pour without asking.")] = False,
+    is_doubt_accepted: Annotated[
+        bool, typer.Option("--anyway", help="Pour even if it is not advised, for it is likely to spill.")
+    ] = False,
     is_emptied: Annotated[
         bool, typer.Option("--emptied", help="The object was emptied: begin with the first cup.")
     ] = False,
@@ -158,7 +161,7 @@ def pour(
     """Show the plan, ask, and let the arm pour; after a stop, back off and plan again."""
     from app.cli import arm_commands
 
-    arm_commands.pour(session, cell, yes, is_emptied, workers)
+    arm_commands.pour(session, cell, yes, is_doubt_accepted, is_emptied, workers)
 
 
 @app.command()

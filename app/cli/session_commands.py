@@ -21,12 +21,14 @@ from app.library.summary import PourScore, SessionSummary
 from app.operations import pouring
 from app.operations.scanning import ScanRequest, scan_object
 from app.operations.session import bring_report_up_to_date
-from core.errors import InputError
+from core.errors import InputError, NotAdvised
 from core.files import write_json
+from core.imagination.advice import advice_against
 from core.imagination.amount.result import amount_text
 from core.imagination.imagination import Imagination
 from core.imagination.retention.result import retention_sentence
 from core.parameters import Parameters, flatten
+from core.pipeline.pipeline import Pipeline
 from core.report import omega_verdict_sentence, pours_sentence, risk_sentence, verdict_sentence
 from core.session import Session
 from core.workers import WorkerPool
@@ -96,6 +98,8 @@ def imagine(
     if json_file is not None:
         _write_answer(json_file, table)
     _print_verdict(result)
+    if table["advice"] is not None:
+        print(table["advice"])
 
 
 def report(session: Path, workers: int | None) -> None:
@@ -113,9 +117,16 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
         result = pipeline.imagination()
         _print_verdict(result)
         if result.choice is not None and not pouring.was_poured(pipeline.session):
-            pouring.pour(pipeline, pouring.cell_of(pipeline.session, None), PrintingOperator(out))
+            _pour_if_advised(pipeline, out)
         path = pipeline.report()
     print(f"Report: {path}")
+
+
+def _pour_if_advised(pipeline: Pipeline, out: Path) -> None:
+    try:
+        pouring.pour(pipeline, pouring.cell_of(pipeline.session, None), PrintingOperator(out))
+    except NotAdvised as advice:
+        print(f"{advice} 'poursight pour {out} --yes --anyway' pours all the same.")
 
 
 def sessions(text: str) -> None:
@@ -182,11 +193,19 @@ def answer_table(result: Imagination, parameters: Parameters) -> dict[str, Any]:
         "p_spread": None if grid is None else grid.p_spread.tolist(),
         "choice": None if result.choice is None else result.choice.to_table(),
         "risk": None if result.risk is None else result.risk.to_table(),
+        "advice": _advice(result, parameters) or None,
         "paper_choice": None if result.paper_choice is None else result.paper_choice.to_table(),
         "seconds": {"containability": result.containability_s, "pouring": result.pouring_s},
         "seed": parameters.seed,
         "parameters": flatten(parameters),
     }
+
+
+def _advice(result: Imagination, parameters: Parameters) -> str:
+    if result.choice is None:
+        return ""
+    i, j = result.choice.i, result.choice.j
+    return advice_against(result.risk, i, j, parameters.risk.wanted_clean)
 
 
 def _print_verdict(result: Imagination) -> None:

@@ -97,6 +97,7 @@ class PlannedPour:
         number: names it in the confirmation.
         plan: the moves, and their clearance.
         note: why it is this pour, in sentences.
+        advice: why it should rather not be made; empty if nothing speaks against it.
         expires_s: `time.monotonic` after which it cannot be executed any more.
         pivot_m: (3,) r_pivot.
         T_flange_cup: (4, 4) the cup in the hand.
@@ -106,6 +107,7 @@ class PlannedPour:
     number: int
     plan: PourPlan
     note: str
+    advice: str
     expires_s: float
     pivot_m: FloatArray
     T_flange_cup: FloatArray

@@ -102,7 +102,7 @@ class ArmWork(Service):
             connected.pouring = pouring
             connected.T_flange_cup = prepared.cell.T_flange_grasp @ fresh.plan.T_grasp_cup
             self._offer = Offer(self._next(), task, pouring, fresh, (), connected.T_flange_cup)
-            return shown_pour(self._offer, fresh, target.note or prepared.sentence, connected)
+            return shown_pour(self._offer, fresh, prepared, connected)
 
     def pour(self, reporter: JobReporter, number: int, confirmed_s: float) -> Path:
         """Make the pour that was planned last, and return the run's folder; the session is locked meanwhile.

@@ -33,6 +33,7 @@ from hardware.errors import RobotError, RobotLost, RobotNotReady
 from hardware.modes import unreadiness
 
 if TYPE_CHECKING:
+    from app.operations.pouring import PreparedPour
     from core.motion.pour.plan import PlannedMove, PourTarget
     from core.pipeline.pipeline import Pipeline
     from hardware.cell.cell import Arm
@@ -229,12 +230,15 @@ class Offer:
     T_flange_cup: FloatArray
 
 
-def shown_pour(offer: Offer, fresh: FreshPlan, note: str, connected: ConnectedArm) -> PlannedPour:
+def shown_pour(
+    offer: Offer, fresh: FreshPlan, prepared: PreparedPour, connected: ConnectedArm
+) -> PlannedPour:
     """Return a planned pour as the page shows it."""
     return PlannedPour(
         offer.number,
         fresh.plan,
-        note,
+        fresh.target.note or prepared.sentence,
+        prepared.advice,
         fresh.made_s + connected.arm.settings.motion.expires_s,
         fresh.target.pivot_m,
         offer.T_flange_cup,

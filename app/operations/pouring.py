@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from app.operations.choosing import described_cell, refuse_unfeasible
 from core.errors import Cancelled, InputError, MotionError, PoursightError, Remedy, StageError
+from core.imagination.advice import advice_against
 from core.imagination.amount.result import Amount
 from core.imagination.results import PourGrid
 from core.motion.pour.cell import PourCell
@@ -40,6 +41,8 @@ class PreparedPour:
         grid: the imagined pours.
         motions: which of them the arm can make.
         target: the chosen one; none if the arm can make none.
+        advice: why it should rather not be poured; empty if nothing speaks against it, or a person chose the
+            pour.
         amount: how many candies shall go in; none if it is not known what the object holds.
         n_per_cup: candies in each cup to be poured.
     """
@@ -49,6 +52,7 @@ class PreparedPour:
     grid: PourGrid
     motions: PourMotions
     target: PourTarget | None
+    advice: str
     amount: Amount | None
     n_per_cup: tuple[int, ...]
 
@@ -78,6 +82,10 @@ class Operator(Protocol):
 
     def prepared(self, prepared: PreparedPour) -> None:
         """Which pour will be made."""
+        ...
+
+    def confirm_doubtful(self, advice: str) -> None:
+        """Whether it shall be poured although it is not advised."""
         ...
 
     def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:
@@ -130,8 +138,9 @@ def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
         reason = pours_sentence(imagination.containability, imagination.grid, imagination.choice)
         raise StageError(f"There is no pour to make. {reason}")
     target = _target(pipeline, imagination, motions)
+    advice = _advice(pipeline, imagination, motions, target)
     amount, n_per_cup = imagination.amount, imagination.n_per_cup
-    return PreparedPour(settings, cell, imagination.grid, motions, target, amount, n_per_cup)
+    return PreparedPour(settings, cell, imagination.grid, motions, target, advice, amount, n_per_cup)
 
 
 def cell_of(session: Session, cell_file: Path | None) -> CellSettings:
@@ -155,6 +164,8 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
     prepared = prepare(pipeline, settings)
     target = prepared.chosen()
     operator.prepared(prepared)
+    if prepared.advice:
+        operator.confirm_doubtful(prepared.advice)
     session = pipeline.session.path
     cups = prepared.n_per_cup
     if len(cups) > 1 and not operator.is_present and not settings.is_simulated:
@@ -201,6 +212,16 @@ def _target(pipeline: Pipeline, imagination: Imagination, motions: PourMotions) 
         record.digest,
         "" if operator is None else operator_sentence(operator, grid, motions.choice),
     )
+
+
+def _advice(
+    pipeline: Pipeline, imagination: Imagination, motions: PourMotions, target: PourTarget | None
+) -> str:
+    """Who chooses a pour and gives a reason has made up his mind."""
+    if target is None or target.note:
+        return ""
+    risk = motions.risk or imagination.risk
+    return advice_against(risk, target.i, target.j, pipeline.parameters.risk.wanted_clean)
 
 
 def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path:

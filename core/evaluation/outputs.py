@@ -29,7 +29,7 @@ _COLUMNS = (
     *("id", "label", "omega", "predicted", "p_chosen", "poured", "spilled", "seconds"),
     *("seed", "variant", "category", "restricted", "calibration"),
     *("n_drop", "n_in", "measure", "threshold", "capacity_share", "capacity_candies", "capacity_ml"),
-    *("holds_rad", "choice_i", "choice_j", "clean_at_least", "n_tries", "n_feasible", "problem"),
+    *("holds_rad", "choice_i", "choice_j", "clean_at_least", "declined", "n_tries", "n_feasible", "problem"),
 )
 
 
@@ -94,6 +94,7 @@ def _figures_table(found: Figures) -> dict[str, Any]:
     shares = {
         "pours": found.pours,
         "right_objects": found.right_objects,
+        "declined": found.declined,
         "clean_objects": found.clean_objects,
     }
     return {
@@ -184,7 +185,15 @@ def _csv_row(evaluation: Evaluation, trial: Trial) -> tuple[object, ...]:
         *(trial.seed, trial.variant, one.category, int(one.is_restricted), int(one.is_calibration)),
         *(trial.n_drop, trial.n_in, "" if trial.score is None else trial.measure, trial.threshold),
         *map(_cell, (trial.capacity_share, trial.capacity_candies, trial.capacity_ml, trial.holds_rad)),
-        *(i, j, _cell(trial.clean_at_least), trial.n_tries, _cell(trial.n_feasible), trial.problem),
+        *(
+            i,
+            j,
+            _cell(trial.clean_at_least),
+            int(trial.is_declined),
+            trial.n_tries,
+            _cell(trial.n_feasible),
+            trial.problem,
+        ),
     )
 
 

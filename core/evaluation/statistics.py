@@ -197,19 +197,29 @@ class Figures:
 
     @property
     def pours(self) -> Share:
-        """Pours without a spilled candy; a container that was not poured into failed in all of its pours."""
+        """Pours without a spilled candy; a container that was not poured into failed in all of its pours.
+
+        So did one that the program wrongly advised not to pour into; one that it rightly did counts nowhere.
+        """
         counted = [_clean(trial, self.n_pours) for trial in self._container_trials]
         return Share(sum(one.count for one in counted), sum(one.n for one in counted))
 
     def pours_in(self, world: str) -> Share:
-        """Pours into containers without a spilled candy, of those made in one ground-truth world."""
+        """Pours into containers without a spilled candy, of those advised and made in one world."""
         counts = [
             count
             for trial in self._container_trials
+            if not trial.is_declined
             for one, count in zip(trial.worlds, trial.spilled, strict=True)
             if one == world
         ]
         return Share(sum(count == 0 for count in counts), len(counts))
+
+    @property
+    def declined(self) -> Share:
+        """Of the containers' trials in which pouring was not advised, those in which that was right."""
+        declined = [trial for trial in self._container_trials if trial.is_declined]
+        return Share(sum(trial.is_rightly_declined for trial in declined), len(declined))
 
     @property
     def clean_objects(self) -> Share:
@@ -324,6 +334,8 @@ def agreement_of(objects: Iterable[EvaluatedObject]) -> AgreementOfPeople | None
 
 
 def _clean(trial: Trial, n_pours: int) -> Share:
+    if trial.is_declined:
+        return Share(0, 0 if trial.is_rightly_declined else n_pours)
     return Share(trial.n_clean_pours, trial.n_pours or n_pours)
 
 

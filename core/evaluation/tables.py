@@ -18,6 +18,10 @@ INTERVALS_NOTE = (
     "In brackets 95 % intervals (Wilson; of the AUC: Newcombe). They take trials and pours as independent; "
     "those of one object are not, so with several seeds or pours the true intervals are wider."
 )
+DECLINED_NOTE = (
+    "Declined: the program advised not to pour. That is right where fewer pours were clean than wanted, and "
+    "such an object counts nowhere else; where it is wrong, all of the object's pours count as spilled."
+)
 MEASURES_NOTE = (
     "Capacity share: the volume that an imagined filling leaves in the object, as a share of its convex "
     "hull's. Omega: the share of the candies dropped on it that stay."
@@ -50,6 +54,8 @@ class TableRow:
         measure: what judges; none where it is neither.
         threshold: of the measure; none where there is no measure.
         pours: pours without a spilled candy; of nothing where Table II has no such row.
+        declined: of the trials in which pouring into a container was not advised, those in which that was
+            right; none where nothing is advised.
         clean_objects: containers of which no pour spilled a candy; none where that is not known.
         is_from_paper: whether it is the paper's own, on its own objects.
     """
@@ -66,6 +72,7 @@ class TableRow:
     measure: Measure | None
     threshold: float | None
     pours: Share
+    declined: Share | None
     clean_objects: Share | None
     is_from_paper: bool = False
 
@@ -113,6 +120,7 @@ def paper_rows() -> list[TableRow]:
             threshold,
             Share(n_clean, n_containers),
             None,
+            None,
             is_from_paper=True,
         )
         for variant, method, dataset, n_containers, n_others, n_right, n_clean, threshold in _PAPER
@@ -143,7 +151,7 @@ def text_tables(evaluation: Evaluation) -> str:
         "",
         "Table II: pours without a spilled candy, in %",
         text_table(
-            ("variant", "objects", "n", "pours", "success", "objects w/o any spill"),
+            ("variant", "objects", "n", "pours", "success", "declined", "clean objects"),
             [_pouring_cells(row) for row in pouring(rows)],
             n_words=2,
         ),
@@ -152,6 +160,7 @@ def text_tables(evaluation: Evaluation) -> str:
         *([fill(truth_sentence(evaluation.truth), WIDTH)] if evaluation.truth else []),
         fill(INTERVALS_NOTE, WIDTH),
         fill(MEASURES_NOTE, WIDTH),
+        fill(DECLINED_NOTE, WIDTH),
         "",
         *_margin_lines(evaluation),
         *_failure_lines(evaluation),
@@ -229,6 +238,7 @@ def _row(variant: str, dataset: str, found: Figures) -> TableRow:
         found.measure,
         found.threshold,
         found.pours,
+        found.declined,
         found.clean_objects,
     )
 
@@ -253,8 +263,16 @@ def _pouring_cells(row: TableRow) -> tuple[str, ...]:
         str(row.n_containers),
         str(pours.n),
         with_interval(pours.value, pours.interval),
+        declined_text(row.declined),
         "" if clean is None else with_interval(clean.value, clean.interval),
     )
+
+
+def declined_text(declined: Share | None) -> str:
+    """Return how often pouring was not advised, and how often rightly, such as '2 (1 right)'."""
+    if declined is None:
+        return ""
+    return f"{declined.n} ({declined.count} right)" if declined.n else "0"
 
 
 def world_rows(evaluation: Evaluation) -> list[tuple[str, str, Share]]:

@@ -61,6 +61,7 @@ class Trial(Scored):
         holds_rad: tilt up to which nothing leaves, in the worst direction; none if not imagined.
         p_chosen: P of the chosen pour (Eq. 4); none if it is no container.
         clean_at_least: chance that it spills nothing, the lower 95 % bound; none without tries.
+        wanted_clean: the bound below which pouring is not advised; none where nothing is advised.
         n_tries: imagined pours in all, with and without errors; 0 without a risk.
         n_feasible: how many of the imagined pours the arm can make; none without an arm.
         choice: (i, j) of the chosen pour.
@@ -88,6 +89,7 @@ class Trial(Scored):
     holds_rad: float | None = None
     p_chosen: float | None = None
     clean_at_least: float | None = None
+    wanted_clean: float | None = None
     n_tries: int = 0
     n_feasible: int | None = None
     choice: tuple[int, int] | None = None
@@ -127,6 +129,18 @@ class Trial(Scored):
     def n_clean_pours(self) -> int:
         """Pours of which no candy was spilled, the paper's success (Sec. V-B)."""
         return sum(count == 0 for count in self.spilled)
+
+    @property
+    def is_declined(self) -> bool:
+        """Whether the program advised not to pour; it was poured all the same, to see who is right."""
+        if self.clean_at_least is None or self.wanted_clean is None:
+            return False
+        return self.clean_at_least < self.wanted_clean
+
+    @property
+    def is_rightly_declined(self) -> bool:
+        """Whether it was, and fewer of its pours were clean than wanted."""
+        return self.is_declined and self.n_clean_pours < (self.wanted_clean or 0.0) * self.n_pours
 
     @property
     def total_s(self) -> float:

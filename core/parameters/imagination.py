@@ -137,11 +137,11 @@ class PouringParameters(Group):
     n_pour: int = quantity(
         60, "N_pour: candies in the cup.", unit="", source=f"{PAPER}, Sec. IV-C", low=1, high=1000
     )
-    amount: Literal["number", "safe", "half"] = choice(
-        "number",
-        "How many candies go in: n_pour, as many as safely fit, or half of what fits; what one cup does not "
-        "hold is poured with several.",
-        source=OURS,
+    amount: Literal["up_to", "number", "safe", "half"] = choice(
+        "up_to",
+        "How many candies go in: n_pour but no more than safely fit, n_pour whatever fits, as many as safely "
+        "fit, or half of what fits; what one cup does not hold is poured with several.",
+        source=f"{OURS}: docs/decisions/0022; {PAPER}: number",
     )
     n_packings: int = quantity(
         1,

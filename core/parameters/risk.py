@@ -29,6 +29,15 @@ class RiskParameters(Group):
         low=0,
         high=0.999,
     )
+    wanted_clean: float = quantity(
+        0.6,
+        "Chance of spilling nothing, as its lower 95 % bound, below which pouring is not advised and has to "
+        "be asked for explicitly; 0: it is never advised against.",
+        unit="",
+        source=f"{OURS}: docs/decisions/0022",
+        low=0,
+        high=0.999,
+    )
     object_error_m: float = quantity(
         0.001,
         "SD along x and y of where the object stands; a scan with worse poses raises it.",

@@ -11,7 +11,7 @@ from typing import Any
 from core.collision import CollisionModel
 from core.errors import Remedy, SessionError, StageError
 from core.files import read_json, write_json
-from core.imagination.amount.reasoning import is_number_in_one_cup
+from core.imagination.amount.reasoning import is_one_cup_asked_for
 from core.imagination.context import ImaginationContext
 from core.imagination.imagination import Imagination
 from core.imagination.rendering.evidence import Evidence
@@ -280,7 +280,7 @@ class Pipeline:
         if stages["containability"] is Freshness.FRESH:
             return
         with suppress(StageError):  # what the cup cannot hold the amount says, after the drop had its say
-            if not is_number_in_one_cup(self.parameters):
+            if not is_one_cup_asked_for(self.parameters):
                 return
             part = stage("pouring").part(self.parameters)
             context = ImaginationContext(

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from core.files import write_whole
+from core.imagination.advice import advice_against
 from core.imagination.amount.result import amount_text
 from core.imagination.results import Containability, PourGrid
 from core.imagination.retention.result import Retention, retention_sentence
@@ -83,6 +84,7 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         "amount_said": ""
         if content.amount is None or not found.is_open_container
         else amount_text(content.amount),
+        "advice": _advice(content),
         "pours_said": pours_sentence(found, content.pours, content.choice),
         "footprint_plot": _both(footprint_plot(found), footprint_plot(found, dark=True)),
         "pictures": embed_pictures(content.pictures),
@@ -136,6 +138,14 @@ def _risk_said(content: ReportContent, grid: PourGrid) -> str:
     if content.risk is None or content.choice is None or content.paper_choice is None:
         return ""
     return risk_sentence(grid, content.risk, content.choice, content.paper_choice)
+
+
+def _advice(content: ReportContent) -> str:
+    """Against the pour that the program would make; who chose another one has made up his mind."""
+    choice = content.choice if content.motions is None else content.motions.choice
+    if choice is None or content.operator is not None:
+        return ""
+    return advice_against(content.risk, choice.i, choice.j, content.parameters.risk.wanted_clean)
 
 
 def _operator_said(content: ReportContent) -> str:

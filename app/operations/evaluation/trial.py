@@ -33,7 +33,7 @@ from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters, apply_settings
 from core.pipeline.in_memory import StageMemory
-from core.pipeline.running import Tools
+from core.pipeline.running import Tools, with_n_pour
 from core.workers import RunHere, WorkerReporter
 from hardware.cell.scene import pour_cell
 from hardware.simulation.pour_outcome.driven_path import DrivenPath
@@ -42,14 +42,14 @@ from hardware.simulation.pour_outcome.settings import OutcomeSettings
 _T = TypeVar("_T")
 _PICTURE_PX = (320, 240)
 _TIMED = ("collision", "containability", "judgement", "pouring", "risk", "motion")
-_WHATEVER_THE_VERDICT = {
+_BY_OMEGA = {
     "containability.verdict": "omega",
     "containability.omega_threshold": 0.0,
     "containability.capacity_threshold": Parameters().containability.capacity_threshold,
     "pouring.amount": "number",
 }
-"""Pours of N_pour into an object that is known to be a container: variants that differ only in how they judge
-share them."""
+"""Pours of N_pour into an object that is known to be a container: variants that differ only in the Omega that
+they ask for share them."""
 
 
 @dataclass(frozen=True)
@@ -200,28 +200,29 @@ class _Work:
 
         An arm that can make none of the pours makes none.
         """
-        pours = apply_settings(parameters, _WHATEVER_THE_VERDICT)
+        by_omega = parameters.containability.verdict == "omega"
+        pours = apply_settings(parameters, _BY_OMEGA) if by_omega else parameters
         grid: PourGrid = self._stages().result("pouring", pours)
         tries: Tries = self._stages().result("risk", pours)
         risk, choice = tries.risk, tries.choice
-        facts: dict[str, Any] = {}
+        facts: dict[str, Any] = {"n_pour": grid.n_pour}
         if has_arm:
             motions: PourMotions = self._stages().result("motion", pours)
             risk, choice = motions.risk or risk, motions.choice
             facts["n_feasible"] = motions.n_feasible
         if choice is None:
             return facts
-        chosen = choice
+        chosen, pouring = choice, with_n_pour(parameters, grid.n_pour).pouring
         outcomes = self._once(
             "outcome",
             (
-                *("outcome", has_arm, parameters.pouring, choice.i, choice.j, choice.theta_rad),
+                *("outcome", has_arm, pouring, choice.i, choice.j, choice.theta_rad),
                 *choice.pivot_m.tolist(),
             ),
             lambda: pour_into(
                 self._placed(),
                 self._path(pours, chosen, has_arm),
-                parameters.pouring,
+                pouring,
                 [one.model_copy(update={"seed": parameters.seed}) for one in self.task.worlds.values()],
                 self.task.n_pours,
                 self._runner,
@@ -231,6 +232,7 @@ class _Work:
         return facts | {
             "p_chosen": float(grid.p[choice.i, choice.j]),
             "clean_at_least": None if risk is None else float(risk.clean_at_least[choice.i, choice.j]),
+            "wanted_clean": None if risk is None else parameters.risk.wanted_clean,
             "n_tries": 0 if risk is None else int(risk.n_tries.sum()),
             "choice": (choice.i, choice.j),
             "theta_rad": choice.theta_rad,

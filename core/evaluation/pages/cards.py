@@ -102,7 +102,8 @@ def poured_sentence(trial: Trial, n_pours: int) -> str:
         times = "once" if trial.n_pours == 1 else f"{trial.n_pours} times"
         side = "" if trial.theta_rad is None else f" from {degrees(trial.theta_rad) % 360:.0f}\N{DEGREE SIGN}"
         stuck = f" {sum(trial.in_cup)} stayed in the cup." if any(trial.in_cup) else ""
-        return f"Poured {times}{side}: {counts} of {trial.n_pour} candies spilled{_promised(trial)}.{stuck}"
+        poured = f"Poured {times}{side}: {counts} of {trial.n_pour} candies spilled{_promised(trial)}.{stuck}"
+        return f"{poured} The program advised not to." if trial.is_declined else poured
     if trial.score is not None and trial.problem:
         return f"Failed: {trial.problem}"
     if trial.label == "container" and trial.n_feasible == 0:

@@ -12,9 +12,11 @@ from core.evaluation.pages.cards import TROUBLES, State, cards_of, state_of
 from core.evaluation.pages.charts import histogram, roc_curve, roc_sentence
 from core.evaluation.statistics import Figures, agreement_of, figures_of, sets_of, stage_times
 from core.evaluation.tables import (
+    DECLINED_NOTE,
     INTERVALS_NOTE,
     MEASURES_NOTE,
     classification,
+    declined_text,
     interval_text,
     paper_rows,
     percent,
@@ -76,6 +78,8 @@ def report_page(evaluation: Evaluation, folder: Path) -> str:
             "pouring": pouring(rows),
             "world_rows": world_rows(evaluation),
             "intervals_note": INTERVALS_NOTE,
+            "declined_note": DECLINED_NOTE,
+            "declined_text": declined_text,
             "measures_note": MEASURES_NOTE,
             "troubles": _troubles(evaluation),
             "charts": _charts(found),

@@ -52,8 +52,9 @@ def plan_amount(capacity: Capacity | None, parameters: Parameters) -> PlannedAmo
     if capacity is None:
         _check_amount(parameters)
         return PlannedAmount(pouring.n_pour, None)
-    requests = {"safe": SAFE, "half": HALF, "number": AmountRequest("number", pouring.n_pour)}
-    amount = reason_amount(requests[pouring.amount], capacity, parameters)
+    requests = {"safe": SAFE, "half": HALF}
+    request = requests.get(pouring.amount) or AmountRequest(pouring.amount, pouring.n_pour)
+    amount = reason_amount(request, capacity, parameters)
     n_first = min(pouring.n_pour, cup_limit(parameters)) if amount.refusal else amount.n_per_cup[0]
     return PlannedAmount(n_first, amount)
 
@@ -67,7 +68,7 @@ def _check_amount(parameters: Parameters) -> None:
     pouring = parameters.pouring
     if parameters.containability.verdict != "omega":
         return  # it will be known what the object holds, and several cups can be poured
-    if pouring.amount != "number":
+    if pouring.amount in ("safe", "half"):
         raise StageError(
             f"pouring.amount={pouring.amount} needs to know what the object holds; set "
             "containability.verdict=capacity, or pouring.amount=number."
@@ -75,9 +76,10 @@ def _check_amount(parameters: Parameters) -> None:
     require_room(parameters)
 
 
-def is_number_in_one_cup(parameters: Parameters) -> bool:
-    """Whether N_pour is known before the object is, for a number is asked for that the cup holds."""
-    return parameters.pouring.amount == "number" and parameters.pouring.n_pour <= cup_limit(parameters)
+def is_one_cup_asked_for(parameters: Parameters) -> bool:
+    """Whether N_pour candies are likely to go into one cup, as can be told before the object is known."""
+    pouring = parameters.pouring
+    return pouring.amount in ("up_to", "number") and pouring.n_pour <= cup_limit(parameters)
 
 
 def reason_amount(request: AmountRequest, capacity: Capacity, parameters: Parameters) -> Amount:
@@ -93,7 +95,12 @@ def reason_amount(request: AmountRequest, capacity: Capacity, parameters: Parame
     """
     n_safe = safe_candies(capacity, parameters)
     n_half = max(int(capacity.n_candies / 2), 1)
-    n_asked = {"safe": n_safe, "half": n_half, "number": request.n_candies}[request.kind]
+    n_asked = {
+        "safe": n_safe,
+        "half": n_half,
+        "number": request.n_candies,
+        "up_to": min(n_safe, request.n_candies),
+    }[request.kind]
     n_most = MOST_CUPS * cup_limit(parameters)
     refusal = _refusal(request, n_asked, n_safe, n_most, capacity)
     n_total = 0 if refusal else min(n_asked, n_most)

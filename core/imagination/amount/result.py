@@ -19,32 +19,37 @@ class AmountRequest:
     """How much shall be poured.
 
     Attributes:
-        kind: "safe": as much as safely fits; "half": half full; "number": `n_candies`.
-        n_candies: the number asked for; zero with the other kinds.
+        kind: "up_to": `n_candies`, or as many as safely fit if these are fewer; "number": `n_candies`
+            whatever fits; "safe": as many as safely fit; "half": half full.
+        n_candies: the number asked for; zero where none is.
 
     Raises:
         InputError: the number asked for is not from 1 to `MOST_ASKED`.
     """
 
-    kind: Literal["safe", "half", "number"]
+    kind: Literal["up_to", "number", "safe", "half"]
     n_candies: int = 0
 
     def __post_init__(self) -> None:
-        if self.kind == "number" and not 1 <= self.n_candies <= MOST_ASKED:
+        if self.kind in _WITH_NUMBER and not 1 <= self.n_candies <= MOST_ASKED:
             raise InputError(
                 f"{self.n_candies} candies cannot be poured; ask for a whole number from 1 to {MOST_ASKED}."
             )
 
     def __str__(self) -> str:
         """Return the text from which `parse_amount` makes this request."""
-        return str(self.n_candies) if self.kind == "number" else self.kind
+        if self.kind not in _WITH_NUMBER:
+            return self.kind
+        return f"{_UP_TO} {self.n_candies}" if self.kind == "up_to" else str(self.n_candies)
 
 
+_WITH_NUMBER = ("up_to", "number")
+_UP_TO = "up to"
 SAFE, HALF = AmountRequest("safe"), AmountRequest("half")
 
 
 def parse_amount(text: str) -> AmountRequest:
-    """Return what a text asks for: "safe", "half" or a whole number of candies.
+    """Return what a text asks for: "safe", "half", a whole number of candies, or "up to" such a number.
 
     Raises:
         InputError: it is none of these.
@@ -53,13 +58,15 @@ def parse_amount(text: str) -> AmountRequest:
     for request in (SAFE, HALF):
         if word == request.kind:
             return request
-    digits = word.removeprefix("-")
+    is_limit = word.startswith(f"{_UP_TO} ")
+    number = word.removeprefix(_UP_TO).strip() if is_limit else word
+    digits = number.removeprefix("-")
     if not (digits.isascii() and digits.isdecimal()) or len(digits) > len(str(MOST_ASKED)):
         raise InputError(
             f'The amount "{text}" is none that can be poured; say "safe" for as much as safely fits, "half" '
             f"for half full, or a whole number of candies from 1 to {MOST_ASKED}."
         )
-    return AmountRequest("number", int(word))
+    return AmountRequest("up_to" if is_limit else "number", int(number))
 
 
 @dataclass(frozen=True)
@@ -163,10 +170,20 @@ def amount_sentence(amount: Amount) -> str:
     they = "it fills" if amount.n_total == 1 else "they fill"
     share = f"{100 * amount.share_of_capacity:.0f} % of the {amount.n_fit} that fit"
     if amount.fill_share <= 0:
-        return f"{put}: {share}."
-    if amount.fill_share >= 1:
-        return f"{put}: {they} it to its rim ({share})."
-    return f"{put}: {they} it to {100 * amount.fill_share:.0f} % of its height ({share})."
+        said = f"{put}: {share}."
+    elif amount.fill_share >= 1:
+        said = f"{put}: {they} it to its rim ({share})."
+    else:
+        said = f"{put}: {they} it to {100 * amount.fill_share:.0f} % of its height ({share})."
+    return f"{said} {_why_fewer(amount)}".strip()
+
+
+def _why_fewer(amount: Amount) -> str:
+    """Why it is less than was asked for at most; empty if it is not."""
+    request = parse_amount(amount.request)
+    if request.kind != "up_to" or amount.n_total == request.n_candies or amount.n_total < amount.n_safe:
+        return ""
+    return f"{candies(request.n_candies)} were asked for; only {amount.n_safe} fit safely."
 
 
 def amount_text(amount: Amount) -> str:

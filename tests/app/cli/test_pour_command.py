@@ -86,6 +86,23 @@ def poured(poursight, session):
     return code, out, err
 
 
+def test_a_pour_that_is_likely_to_spill_has_to_be_asked_for(poursight, planned_session):
+    certain = "--set=risk.wanted_clean=0.99"
+    code, out, err = poursight("imagine", planned_session, certain, "--json", "-")
+    assert code == 0, err
+    assert "99 % are wanted" in json.loads(out)["advice"]
+    code, out, err = poursight("pour", planned_session, "--yes")
+    assert code == 1
+    assert "Pouring is not advised" in err and "--anyway" in err
+    assert not (planned_session / "pours").exists(), "nothing moved"
+    code, out, err = poursight("pour", planned_session, "--yes", "--anyway")
+    assert code == 0, err
+    assert "Pouring is not advised" in out
+    assert len(list((planned_session / "pours").iterdir())) == 1
+    assert poursight("report", planned_session)[0] == 0
+    assert "Pouring is not advised" in (planned_session / "report.html").read_text()
+
+
 def test_a_plan_then_a_pour_then_the_report(poursight, session):
     code, out, err = poursight("plan", session)
     assert code == 0, err

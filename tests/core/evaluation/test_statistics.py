@@ -39,6 +39,20 @@ def test_what_failed_is_not_right_and_the_ambiguous_do_not_count(small: Figures)
     assert "tissue <box>" not in small.names
 
 
+def test_a_right_refusal_counts_nowhere_and_a_wrong_one_as_spilled() -> None:
+    doubted = {"clean_at_least": 0.3, "wanted_clean": 0.6}
+    trials = [
+        trial("mug", "container", 80, clean_at_least=0.8, wanted_clean=0.6),
+        trial("egg cup", "container", 80, spilled=(4, 0, 9), in_cup=(0, 0, 0), **doubted),
+        trial("bowl", "container", 80, spilled=(0, 0, 1), in_cup=(0, 0, 0), **doubted),
+    ]
+    found = Figures.of(trials, N_POURS)
+    assert found.declined == Share(1, 2), "2 of 3 pours into the bowl were clean, more than wanted"
+    assert found.pours == Share(3, 6)
+    assert found.clean_objects == Share(1, 2)
+    assert Figures.of([replace(trials[1], wanted_clean=None)], N_POURS).pours == Share(1, 3)
+
+
 def test_auc_by_hand(small: Figures) -> None:
     # tray 8 lies above 0, 0, 2, level with 8, below 24; mug, bowl and vase lie above all five
     assert small.auc == pytest.approx((3 * 5 + 3 + 0.5) / (4 * 5))

@@ -132,6 +132,12 @@ class CheckPanel(Panel):
         self._number = 0
         self._facts = FactGrid("plan_facts")
         self._note = text_label("plan_note", "muted")
+        self._advice = text_label("pour_advice", "attention")
+        self._anyway = self._check(
+            "check_anyway",
+            self.tr("Pour although it is not advised"),
+            self.tr("Candies are likely to fall beside the object"),
+        )
         self._rehearsal = text_label("rehearsal", "muted")
         self._expiry = text_label("plan_expiry", "muted")
         self._reason = text_label("hold_reason", "attention")
@@ -156,7 +162,8 @@ class CheckPanel(Panel):
         )
         confirm = text_label("checks_heading", "heading", self.tr("Before pouring, confirm:"))
         below = (self._rehearsal, self._expiry, self._reason)
-        for widget in (self._facts, self._note, confirm, *self._checks, *below):
+        doubtful = (self._advice, confirm, self._anyway)
+        for widget in (self._facts, self._note, *doubtful, *self._checks, *below):
             self.column.addWidget(widget)
 
     def show_plan(self, planned: PlannedPour, cup: Cup, *, is_rehearsal: bool) -> None:
@@ -168,6 +175,10 @@ class CheckPanel(Panel):
             for check in self._checks:
                 with QSignalBlocker(check):  # whoever shows a plan looks at the ticks afterwards
                     check.setChecked(is_rehearsal)
+            with QSignalBlocker(self._anyway):
+                self._anyway.setChecked(not planned.advice)
+        say(self._advice, planned.advice)
+        self._anyway.setVisible(bool(planned.advice))
         said = self.tr("Cup on its station, {n} candies in it")
         if cup.n_cups > 1:
             said = self.tr("Cup {k} of {cups} on its station, {n} candies in it")
@@ -188,8 +199,9 @@ class CheckPanel(Panel):
         """Why the arm must not move yet; empty if it may."""
         if time.monotonic() >= planned.expires_s:
             return self.tr("The plan has expired; plan again.")
-        left = sum(not check.isChecked() for check in self._checks)
-        if left == len(self._checks):
+        checks = (self._anyway, *self._checks)
+        left = sum(not check.isChecked() for check in checks)
+        if left >= len(self._checks):
             return self.tr("Tick each point once you have checked it.")
         return self.tr("{n} more to tick.").format(n=left) if left else ""
 

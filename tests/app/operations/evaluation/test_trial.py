@@ -8,6 +8,7 @@ import pytest
 from app.operations.evaluation.trial import TrialTask, run_trial
 from core.evaluation.variants import variants_of
 from core.imagination.results import PourChoice
+from core.mesh import TriangleMesh
 from core.mesh_file import write_ply
 from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters, apply_settings
@@ -57,6 +58,22 @@ def test_a_bowl_is_judged_poured_into_and_pictured(task):
     judged = {"mesh", "scan", "collision", "containability", "judgement"}
     assert set(trial.seconds) == judged | {"pouring", "risk", "motion", "outcome"}
     assert result.pictures[trial.picture].startswith(b"\x89PNG")
+
+
+def test_a_small_container_gets_what_safely_fits_and_whoever_wants_more_certainty_is_advised(task, tmp_path):
+    bowl = builtin_object("bowl")
+    write_ply(tmp_path / "half.ply", TriangleMesh(0.5 * bowl.vertices_m, bowl.faces))
+    by_capacity = {"containability.verdict": "capacity", "pouring.n_pour": 80, "risk.wanted_clean": 0.9}
+    quick = {"capacity.n_fillings": 1, "capacity.n_aimed": 20, "holding.n_load": 6, "risk.n_tries": 1}
+    of_bowl = task("bowl", "container", "imagination")
+    parameters = apply_settings(of_bowl.parameters, by_capacity | quick)
+    content = (tmp_path / "half.ply").read_bytes()
+    (trial,) = run_trial(replace(of_bowl, content=content, parameters=parameters)).trials
+    assert trial.problem == ""
+    assert 1 < trial.n_pour < trial.capacity_candies < 80
+    assert len(trial.spilled) == 1
+    assert trial.wanted_clean == 0.9
+    assert trial.is_declined, "two clean trials are too few for 90 %"
 
 
 def test_a_block_is_not_poured_into(task):

@@ -11,6 +11,8 @@ from core.imagination.amount.result import HALF, MOST_ASKED, SAFE, AmountRequest
         (" Half\n", HALF),
         ("45", AmountRequest("number", 45)),
         ("1", AmountRequest("number", 1)),
+        ("up to 60", AmountRequest("up_to", 60)),
+        (" Up to  7 ", AmountRequest("up_to", 7)),
         (str(MOST_ASKED), AmountRequest("number", MOST_ASKED)),
     ],
 )
@@ -20,7 +22,22 @@ def test_what_is_said_is_understood_and_said_again(text, request_):
 
 
 @pytest.mark.parametrize(
-    "text", ["a dozen", "", "12.5", "1e2", "1_0", "²", "٣", "9" * 5000, "--1", "safe half"]
+    "text",
+    [
+        "a dozen",
+        "",
+        "12.5",
+        "1e2",
+        "1_0",
+        "²",
+        "٣",
+        "9" * 5000,
+        "--1",
+        "safe half",
+        "up to",
+        "up to safe",
+        "upto 5",
+    ],
 )
 def test_what_is_no_amount_is_told_with_what_to_say(text):
     with pytest.raises(InputError) as caught:

@@ -90,15 +90,37 @@ def text(page, name):
 def test_with_a_real_arm_nothing_is_ticked_before_somebody_does(qtbot):
     panel = CheckPanel()
     qtbot.addWidget(panel)
-    planned = SimpleNamespace(number=1, note="", plan=None, expires_s=time.monotonic() + 60)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("app.gui.pages.robot.panels.plan_facts", lambda _: [])
-        panel.show_plan(planned, Cup(1, 1, 60, None), is_rehearsal=False)
+    planned = shown(panel, advice="", is_rehearsal=False)
     boxes = [panel.findChild(QCheckBox, name) for name in CHECKS]
     assert not any(box.isChecked() for box in boxes)
     assert "Tick each point" in panel.reason(planned)
     for box in boxes:
         box.setChecked(True)
+    assert panel.reason(planned) == ""
+
+
+def shown(panel, advice, is_rehearsal, number=1):
+    expires_s = time.monotonic() + 60
+    planned = SimpleNamespace(number=number, note="", advice=advice, plan=None, expires_s=expires_s)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("app.gui.pages.robot.panels.plan_facts", lambda _: [])
+        panel.show_plan(planned, Cup(1, 1, 60, None), is_rehearsal=is_rehearsal)
+    return planned
+
+
+def test_what_is_not_advised_has_to_be_ticked_even_in_a_rehearsal(qtbot):
+    panel = CheckPanel()
+    qtbot.addWidget(panel)
+    planned = shown(panel, advice="", is_rehearsal=True)
+    anyway = panel.findChild(QCheckBox, "check_anyway")
+    assert panel.reason(planned) == ""
+    assert not anyway.isVisibleTo(panel)
+
+    planned = shown(panel, advice="Pouring is not advised: it spills.", is_rehearsal=True, number=2)
+    assert text(panel, "pour_advice") == "Pouring is not advised: it spills."
+    assert anyway.isVisibleTo(panel)
+    assert panel.reason(planned) == "1 more to tick."
+    anyway.setChecked(True)
     assert panel.reason(planned) == ""
 
 

@@ -1,0 +1,28 @@
+"""A pour is held against the chance of spilling nothing that is wanted."""
+
+import numpy as np
+
+from core.imagination.advice import advice_against
+from core.imagination.results import NOT_TRIED, PourRisk
+
+CLEAN, DOUBTFUL, SPILLING = (0, 0), (0, 1), (0, 2)
+RISK = PourRisk(
+    60,
+    np.array([[[0] * 13, [0, 0, 0, 2] + [NOT_TRIED] * 9, [9, 4, 7, 5] + [NOT_TRIED] * 9]]),
+)
+
+
+def test_a_sure_pour_is_not_advised_against():
+    assert advice_against(RISK, *CLEAN, 0.6) == ""
+
+
+def test_the_sentence_has_the_bound_the_trials_and_what_is_wanted():
+    said = advice_against(RISK, *DOUBTFUL, 0.6)
+    bound = 100 * RISK.clean_at_least[DOUBTFUL]
+    assert f"only at least {bound:.0f} % likely (3 of 4 trials clean), and 60 % are wanted" in said
+    assert "(0 of 4 trials clean)" in advice_against(RISK, *SPILLING, 0.6)
+
+
+def test_whoever_wants_no_certainty_or_tries_nothing_gets_no_advice():
+    assert advice_against(RISK, *SPILLING, 0.0) == ""
+    assert advice_against(None, *SPILLING, 0.6) == ""
