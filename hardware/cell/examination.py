@@ -71,7 +71,7 @@ def _camera(settings: CellSettings) -> Finding:
 
 def _camera_of(settings: CellSettings) -> Camera:
     """The cell's camera; a simulated one looks at an empty cell from where the arm rests."""
-    if not settings.is_simulated:
+    if not settings.has_simulated_object:
         return real_camera(settings)
     table_m = np.array([*settings.place.platform_center_m[:2], settings.place.table_height_m])
     return open_cell(settings, World(None, table_m)).camera
