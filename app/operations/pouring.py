@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from app.operations.arm import ArmOperator, recover
 from app.operations.choosing import described_cell, refuse_unfeasible
 from core.errors import Cancelled, InputError, MotionError, PoursightError, Remedy, StageError
 from core.imagination.amount.result import Amount
@@ -68,13 +69,8 @@ class PreparedPour:
         return self.target
 
 
-class Operator(Protocol):
-    """The person at the arm. Each `confirm` raises `Cancelled` if the answer is no; then nothing moves."""
-
-    @property
-    def is_present(self) -> bool:
-        """Whether somebody refills the cup, and finds and fixes what stopped the arm."""
-        ...
+class Operator(ArmOperator, Protocol):
+    """The person at the arm that pours."""
 
     def prepared(self, prepared: PreparedPour) -> None:
         """Which pour will be made."""
@@ -82,13 +78,6 @@ class Operator(Protocol):
 
     def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:
         """Whether a robot shall pour a cup as planned; `note` says why it is this pour."""
-        ...
-
-    def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:
-        """Whether an arm that was stopped by `error`, or by a request to cancel, shall be made ready again.
-
-        It does not move. The request to cancel has been met: it is to be forgotten.
-        """
         ...
 
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
@@ -157,7 +146,7 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
     operator.prepared(prepared)
     session = pipeline.session.path
     cups = prepared.n_per_cup
-    if len(cups) > 1 and not operator.is_present and not settings.is_simulated:
+    if len(cups) > 1 and not operator.is_present and not settings.has_simulated_object:
         raise InputError(
             f"{len(cups)} cups are to be poured, and nobody would fill them; pour with an operator at the "
             "arm, or pour less."
@@ -218,13 +207,7 @@ def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path
 
 def _recover(operator: Operator, pouring: Pouring, error: PoursightError) -> None:
     """Step by step, each confirmed: make the arm ready, back off with the cup, then plan again."""
-    operator.confirm_recovery(error, is_repeated=False)
-    while True:
-        try:
-            pouring.recover()
-            break
-        except DeviceError as reason:
-            operator.confirm_recovery(reason, is_repeated=True)
+    recover(pouring, operator, error)
     moves = pouring.plan_back_off()
     operator.confirm_back_off(moves)
     pouring.back_off(moves)
@@ -234,7 +217,7 @@ def _recover(operator: Operator, pouring: Pouring, error: PoursightError) -> Non
 def _record_outcome(
     pipeline: Pipeline, operator: Operator, settings: CellSettings, folder: Path, cup: Cup
 ) -> None:
-    if settings.is_simulated:
+    if settings.has_simulated_object:
         from app.operations.outcome import simulated_outcome
 
         outcome: Outcome | None = simulated_outcome(pipeline, settings, folder)

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.cli.arm_commands import PrintingOperator
+from app.cli.operators import PrintingOperator
 from app.operations.pouring import pour_cup
 from core.errors import Cancelled
 from core.session.cups import Cup

@@ -15,9 +15,10 @@ from core.session.pour_runs import PourRun, pour_runs
 from hardware.cell import Arm
 from hardware.cell.scene import motion_scene, pour_cell
 from hardware.cell.settings import ARMS
+from hardware.driving import refuse_deviation
 from hardware.errors import DeviceError, TrackingLost
 from hardware.grippers.simulated import SimulatedGripper
-from hardware.pouring.pouring import Pouring, refuse_deviation
+from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
 from tests.hardware.pouring.rig import a_target, quick_cell
 
