@@ -8,7 +8,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,7 @@ from core.session import explained
 from core.session.pour_runs import next_run_folder
 from hardware.cell import Arm
 from hardware.driving import SAME_PLACE_RAD, WatchedArm
-from hardware.errors import DeviceError, RobotError
+from hardware.errors import DeviceError, OutputChanged, RobotError
 from hardware.interfaces import RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
@@ -132,7 +132,10 @@ class Pouring:
         assert self._interrupted is not None, "requested only after a stop on the path"
         plan, moves, index = self._interrupted
         joints_rad = self._arm.robot.state().joints_rad
-        return plan_back_off(plan, moves, index, joints_rad)
+        back = plan_back_off(plan, moves, index, joints_rad)
+        if self._arm.gripper.is_closed:
+            return back
+        return tuple(replace(move, holds_cup=False) for move in back)  # it let go
 
     def back_off(self, moves: tuple[PlannedMove, ...]) -> Path:
         """Back off; return the run's folder. Raises as `carry_out` does."""
@@ -226,12 +229,21 @@ class PourProcedure:
         duration_s = move.trajectory.duration_s
 
         def watch(_state: RobotState, progress: float) -> None:
+            self._refuse_empty_hand(move)
             self._reporter.progress(STAGE, self._done_s + progress * duration_s, self._total_s)
 
+        self._refuse_empty_hand(move)
         self._watched.follow(move.trajectory, move.name, move.label, watch)
         self._done_s += duration_s
         if move.gripper_after is not None:
             self._grip(move.gripper_after == "close")
+
+    def _refuse_empty_hand(self, move: PlannedMove) -> None:
+        if move.holds_cup and not self._arm.gripper.is_closed:
+            raise OutputChanged(
+                f"The {self._arm.gripper.name} is open while it should hold the cup, so the arm was stopped; "
+                "see to the cup, the cable and the 24 V supply."
+            )
 
     def _grip(self, is_closing: bool) -> None:
         gripper = self._arm.gripper

@@ -7,7 +7,14 @@ import numpy as np
 from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import JOINT_NAMES, ArmModel
 from core.motion.kinematics import flange_pose
-from hardware.errors import NotInRemoteControl, ProgramStopped, RobotError, TrackingLost, WrongRobot
+from hardware.errors import (
+    NotInRemoteControl,
+    OutputChanged,
+    ProgramStopped,
+    RobotError,
+    TrackingLost,
+    WrongRobot,
+)
 from hardware.modes import unreadiness
 from hardware.robots.ur.dashboard import Dashboard
 from hardware.robots.ur.messages import RUNTIME_PLAYING, robot_mode, safety_mode
@@ -96,6 +103,18 @@ def tracking_lost(joints_rad: FloatArray, asked_rad: FloatArray, what: str) -> T
     return TrackingLost(
         f"The {JOINT_NAMES[int(nearest.argmax())]} joint was {np.degrees(nearest.max()):.1f} degrees from "
         f"{what} and the arm was stopped; see what holds or pushes it, then recover the robot and plan anew."
+    )
+
+
+def output_changed(before: tuple[bool, bool], now: tuple[bool, bool]) -> OutputChanged | None:
+    """Say so when an output of the tool is not as it was: nobody switches one while the arm moves."""
+    changed = [number for number in (0, 1) if before[number] != now[number]]
+    if not changed:
+        return None
+    return OutputChanged(
+        f"Tool output {changed[0]} went {'on' if now[changed[0]] else 'off'} while the arm moved: the "
+        "gripper may have let go, and the arm was stopped; see to the cup, the cable and the 24 V supply, "
+        "then recover the robot."
     )
 
 

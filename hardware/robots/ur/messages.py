@@ -148,9 +148,14 @@ _TOOL_OUTPUT_BIT = 16
 """Of the digital outputs 0-7 are the cabinet's, 8-15 configurable, 16 and 17 the tool's."""
 
 
+def tool_outputs(raw: AnyArray) -> tuple[bool, bool]:
+    """The two digital outputs of the tool."""
+    bits = int(raw["output_bits"]) >> _TOOL_OUTPUT_BIT
+    return bool(bits & 1), bool(bits & 2)
+
+
 def robot_state(raw: AnyArray, arm: ArmModel) -> RobotState:
     """Return a state of `FIELDS` as the interface defines it."""
-    bits = int(raw["output_bits"]) >> _TOOL_OUTPUT_BIT
     return RobotState(
         joints_rad=raw["joints_rad"],
         target_joints_rad=raw["target_joints_rad"],
@@ -160,7 +165,7 @@ def robot_state(raw: AnyArray, arm: ArmModel) -> RobotState:
         robot_mode=robot_mode(raw),
         safety_mode=safety_mode(raw),
         is_program_running=int(raw["runtime_state"]) == RUNTIME_PLAYING,
-        tool_outputs=(bool(bits & 1), bool(bits & 2)),
+        tool_outputs=tool_outputs(raw),
         speed_scaling=float(np.clip(raw["speed_scaling"], 0.0, 1.0)),
         controller_s=float(raw["controller_s"]),
         time_s=float(raw["time_s"]),

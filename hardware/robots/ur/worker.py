@@ -34,7 +34,7 @@ from hardware.errors import (
     RobotUnreachable,
 )
 from hardware.realtime import take_precedence
-from hardware.robots.ur.checks import deviation, raise_if, unsafe
+from hardware.robots.ur.checks import deviation, output_changed, raise_if, unsafe
 from hardware.robots.ur.messages import (
     FIELDS,
     RUNTIME_PLAYING,
@@ -45,6 +45,7 @@ from hardware.robots.ur.messages import (
     Setup,
     Started,
     StateMailbox,
+    tool_outputs,
 )
 from hardware.robots.ur.motions import Following, JointMoves, Motion
 
@@ -89,6 +90,7 @@ class _Worker:
         self._mailbox = mailbox
         self._cycle_s = setup.cycle_s
         self._motion: Motion | None = None
+        self._outputs = (False, False)
         self._is_over = False
         self._fresh = Event()
         self._kicked_s = 0.0
@@ -161,6 +163,7 @@ class _Worker:
             raise MoveRefused("The arm was stopped; recover the robot first.")
         if self._motion is not None:
             raise MoveRefused("The arm is still moving; stop it or wait until it stops.")
+        self._outputs = tool_outputs(self._latest)
         self._motion = motion
 
     def _stop(self, request: Request) -> None:
@@ -180,6 +183,7 @@ class _Worker:
         """Go on with the motion; whatever is wrong with it ends it."""
         error: RobotError | None = None
         try:
+            raise_if(output_changed(self._outputs, tool_outputs(self._latest)))
             is_done = motion.step(self._latest)
             if motion.is_streaming:
                 self._kicked_s = time.monotonic()

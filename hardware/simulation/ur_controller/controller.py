@@ -19,6 +19,8 @@ CONTROL_SCRIPT_MARK = "def rtde_control():"
 _SWITCHING_S = 1.0
 """Powering on and releasing the brakes; the real ones take longer, but nobody gains by waiting."""
 _UNLOCK_AFTER_S = 5.0
+TOOL_OUTPUT_BIT = 16
+"""Of the digital outputs 16 and 17 are the tool's."""
 
 
 class RuntimeState(IntEnum):
@@ -45,6 +47,7 @@ class Controller:
         robot_mode, safety_mode, runtime_state: as RTDE reports them.
         is_remote: whether it is in remote control (e-Series; always so on a CB3).
         ignores_uploads: a fault: scripts come and nothing happens.
+        ignores_outputs: a fault: outputs are written and nothing happens.
         digital_outputs: bits; 16 and 17 are the tool's.
     """
 
@@ -61,6 +64,7 @@ class Controller:
         self.runtime_state = RuntimeState.STOPPED
         self.is_remote = True
         self.ignores_uploads = False
+        self.ignores_outputs = False
         self.digital_outputs = 0
         self._cycles = 0
         self._program: ControlProgram | None = None
@@ -182,6 +186,11 @@ class Controller:
         if self.robot_mode in (RobotMode.POWER_ON, RobotMode.IDLE):
             begin_s = max([self.time_s, *(due_s for due_s, _ in self._switching)])
             self._switching.append((begin_s + _SWITCHING_S, RobotMode.RUNNING))
+
+    def lose_outputs(self) -> None:
+        """Switch the tool's outputs off, as a short circuit or a broken cable does."""
+        self.digital_outputs &= ~(0b11 << TOOL_OUTPUT_BIT)
+        self.journal.note("outputs lost")
 
     def set_model(self, model: ArmModel) -> None:
         """Be another arm from now on: a fault of the cell, found by its kinematics."""

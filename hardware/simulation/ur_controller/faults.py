@@ -10,6 +10,7 @@
 | `ignore uploads`, `heed uploads` | scripts come and nothing happens |
 | `take registers`, `release registers` | another client has every input |
 | `stick JOINT...`, `unstick` | joints (1 to 6) do not follow; they do again |
+| `output lost`, `ignore outputs`, `heed outputs` | the tool's outputs go off; writes do nothing; do again |
 | `slider SHARE`, `model NAME` | the speed slider; another arm's kinematics |
 | `link drop [SECONDS]` | every connection is closed; new ones are refused that long |
 | `link silent [SECONDS]` | everything stays open, nothing passes; for ever without a time |
@@ -69,6 +70,9 @@ class FaultInjector:
             "remote": lambda: setattr(c, "is_remote", True),
             "ignore uploads": lambda: setattr(c, "ignores_uploads", True),
             "heed uploads": lambda: setattr(c, "ignores_uploads", False),
+            "output lost": c.lose_outputs,
+            "ignore outputs": lambda: setattr(c, "ignores_outputs", True),
+            "heed outputs": lambda: setattr(c, "ignores_outputs", False),
             "take registers": lambda: c.registers.take_all(_OTHER_CLIENT),
             "release registers": lambda: c.registers.release(_OTHER_CLIENT),
             "unstick": c.arm.stuck.clear,

@@ -11,7 +11,7 @@ import numpy as np
 from core.geometry import FloatArray
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.pose_vectors import vector_from_pose
-from hardware.simulation.ur_controller.controller import Controller, RuntimeState
+from hardware.simulation.ur_controller.controller import TOOL_OUTPUT_BIT, Controller, RuntimeState
 from hardware.simulation.ur_controller.link import Link, Network
 from hardware.simulation.ur_controller.rtde_protocol import (
     IN_USE,
@@ -128,11 +128,11 @@ def _numbers(array: FloatArray) -> Values:
 
 _PROTOCOL = 2
 _MAX_RECIPES = 255
-_TOOL_SHIFT, _CONFIGURABLE_SHIFT = 16, 8
+_CONFIGURABLE_SHIFT = 8
 _DIGITAL_OUTPUTS = {
     "standard_digital_output": 0,
     "configurable_digital_output": _CONFIGURABLE_SHIFT,
-    "tool_digital_output": _TOOL_SHIFT,
+    "tool_digital_output": TOOL_OUTPUT_BIT,
 }
 """Where the bits of each group of outputs begin."""
 
@@ -255,6 +255,8 @@ class RtdeLink(Link):
         if values.get("speed_slider_mask"):
             controller.arm.slider = min(max(float(values["speed_slider_fraction"]), 0.0), 1.0)
             self._journal.note("slider", fraction=controller.arm.slider)
+        if controller.ignores_outputs:
+            return
         for group, shift in _DIGITAL_OUTPUTS.items():
             mask = int(values.get(f"{group}_mask", 0))
             if mask:

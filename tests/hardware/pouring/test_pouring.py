@@ -16,7 +16,7 @@ from hardware.cell import Arm
 from hardware.cell.scene import motion_scene, pour_cell
 from hardware.cell.settings import ARMS
 from hardware.driving import refuse_deviation
-from hardware.errors import DeviceError, TrackingLost
+from hardware.errors import DeviceError, OutputChanged, TrackingLost
 from hardware.grippers.simulated import SimulatedGripper
 from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
@@ -130,6 +130,25 @@ def test_a_gripper_that_does_not_close_ends_the_run_and_the_hand_withdraws(fresh
     back = PourRun.load(pouring.back_off(pouring.plan_back_off()))
     assert back.is_back_off
     assert back.sentence == "The arm backed off."
+    assert arm.robot.state().joints_rad == pytest.approx(HOME)
+
+
+def test_a_gripper_that_opens_in_the_carry_ends_the_run_and_the_hand_goes_home_empty(fresh_plan, tmp_path):
+    class Slipping(SimulatedGripper):
+        @property
+        def is_closed(self):
+            was_asked, self._asked = self._asked, self._asked + 1
+            return self._is_closed and was_asked < 4
+
+        _asked = 0
+
+    arm = an_arm(Slipping())
+    pouring = a_pouring(arm, tmp_path)
+    with pytest.raises(OutputChanged, match="open while it should hold the cup"):
+        pouring.carry_out(fresh_plan)
+    pouring.recover()
+    assert not any(move.holds_cup for move in pouring.plan_back_off())
+    pouring.back_off(pouring.plan_back_off())
     assert arm.robot.state().joints_rad == pytest.approx(HOME)
 
 
