@@ -14,6 +14,7 @@ from core.imagination.amount.result import amount_text
 from core.motion.pour.plan import PlannedMove, PourPlan
 from core.session.cups import Cup
 from core.session.pour_runs import Outcome
+from hardware.interfaces import ReadyStep
 from hardware.scanning.route import ScanRoute
 
 MM = 1000.0
@@ -36,6 +37,9 @@ class PrintingOperator:
     def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:  # noqa: ARG002
         """Print the plan."""
         print("\n".join(plan_lines(plan, note)))
+
+    def confirm_step(self, step: ReadyStep, why: str) -> None:
+        """Nobody is asked: an arm that is not ready is not used."""
 
     def confirm_route(self, route: ScanRoute, robot: str) -> None:
         """Print the route."""
@@ -73,6 +77,11 @@ class TerminalOperator(PrintingOperator):
         """Print the plan and ask."""
         super().confirm_pour(plan, note, robot, cup)
         self._confirm(f"Let the {robot} pour{f' ({cup.words})' if cup.words else ''}?")
+
+    def confirm_step(self, step: ReadyStep, why: str) -> None:
+        """Say what is the case, and ask."""
+        print(why, file=sys.stderr)
+        self._confirm(f"Let the program {step.value}?")
 
     def confirm_route(self, route: ScanRoute, robot: str) -> None:
         """Print the route and ask."""

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from core.reconstruction.tsdf import TsdfVolume
     from core.scan.model import RgbdFrame
     from hardware.cell import Cell, CellSettings
-    from hardware.interfaces import Robot
+    from hardware.interfaces import ReadyStep, Robot
     from hardware.scanning.procedure import ScanControl
     from hardware.scanning.route import ScanRoute
     from hardware.scanning.views import ViewRecord
@@ -181,6 +181,10 @@ class _PausingOperator:
 
     def __init__(self, running: _Running) -> None:
         self._running = running
+
+    def confirm_step(self, step: ReadyStep, why: str) -> None:
+        """Publish what is in the way and wait."""
+        self._ask(f"{why} Shall the program {step.value}?")
 
     def confirm_route(self, route: ScanRoute, robot: str) -> None:
         """Publish the route and wait."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from app.operations.arm import ArmOperator, recover
+from app.operations.arm import ArmOperator, connected, recover
 from app.operations.choosing import described_cell, refuse_unfeasible
 from core.errors import Cancelled, InputError, MotionError, PoursightError, Remedy, StageError
 from core.imagination.amount.result import Amount
@@ -151,7 +151,7 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
             f"{len(cups)} cups are to be poured, and nobody would fill them; pour with an operator at the "
             "arm, or pour less."
         )
-    with open_arm(settings) as arm:
+    with connected(open_arm(settings), operator) as arm:
         pouring = Pouring(arm, prepared.cell, target, session, pipeline.reporter)
         while True:
             cup = next_cup(session, target.digest, cups)
@@ -207,7 +207,7 @@ def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path
 
 def _recover(operator: Operator, pouring: Pouring, error: PoursightError) -> None:
     """Step by step, each confirmed: make the arm ready, back off with the cup, then plan again."""
-    recover(pouring, operator, error)
+    recover(pouring, pouring.robot, operator, error)
     moves = pouring.plan_back_off()
     operator.confirm_back_off(moves)
     pouring.back_off(moves)

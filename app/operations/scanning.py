@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from app.library.session_folder import UNFINISHED_SCAN
-from app.operations.arm import ArmOperator, recover
+from app.operations.arm import ArmOperator, connected, recover
 from core.errors import Cancelled, InputError, StageError
 from core.progress import Reporter
 from hardware.errors import RobotError
@@ -128,7 +128,9 @@ def scan_object(
         store.adopt(pipeline.session.folder("scan"))
     elif request.retake and not is_done:
         raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
-    with _open(settings if observer is None else _animated(settings), mesh, seed) as cell:
+    with connected(
+        _open(settings if observer is None else _animated(settings), mesh, seed), operator
+    ) as cell:
         _take(pipeline, cell, store, request, observer, operator)
     pipeline.keep_written_scan(store.publish, origin)
     store.remove()
@@ -189,7 +191,7 @@ def _take_all_with_recovery(
         except (RobotError, Cancelled) as error:
             if not operator.is_present or not moving.was_stopped:
                 raise
-            recover(cell.robot, operator, error)
+            recover(cell.robot, cell.robot, operator, error)
             log.event("recovered", "The arm was made ready again.")
 
 

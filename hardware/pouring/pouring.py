@@ -25,7 +25,7 @@ from core.session.pour_runs import next_run_folder
 from hardware.cell import Arm
 from hardware.driving import SAME_PLACE_RAD, WatchedArm
 from hardware.errors import DeviceError, OutputChanged, RobotError
-from hardware.interfaces import RobotState
+from hardware.interfaces import Robot, RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
 PLAN_FOLDER = "plan"
@@ -61,6 +61,11 @@ class Pouring:
         self._session = session
         self._reporter = reporter
         self._interrupted: tuple[PourPlan, tuple[PlannedMove, ...], int] | None = None
+
+    @property
+    def robot(self) -> Robot:
+        """That pours."""
+        return self._arm.robot
 
     @property
     def is_interrupted(self) -> bool:

@@ -49,22 +49,26 @@ def refuse_other_model(dashboard: Dashboard, arm: ArmModel, name: str) -> None:
 
 
 def refuse_other_kinematics(
-    raw: AnyArray, arm: ArmModel, T_flange_tool: FloatArray, tolerance_m: float, tolerance_rad: float
+    joints_rad: FloatArray,
+    tool_pose: FloatArray,
+    arm: ArmModel,
+    T_flange_tool: FloatArray,
+    tolerances: tuple[float, float],
 ) -> None:
-    """Refuse an arm whose tool is not where the model's kinematics put it at a state of `FIELDS`.
+    """Refuse an arm whose tool, reported at a pose (6,), is not where the model's kinematics put it.
 
     A factory calibration shifts a real arm by some millimetres; UR5 and UR5e differ by 73 mm in their height
     alone.
 
     Raises:
-        WrongRobot: it is farther away than the tolerances.
+        WrongRobot: it is farther away than the tolerances, in metres and radians.
     """
-    expected = flange_pose(arm, raw["joints_rad"]) @ T_flange_tool
-    reported = pose_from_vector(raw["tool_pose"])
+    expected = flange_pose(arm, joints_rad) @ T_flange_tool
+    reported = pose_from_vector(tool_pose)
     apart_m = float(np.linalg.norm(reported[:3, 3] - expected[:3, 3]))
     cosine = (np.trace(expected[:3, :3].T @ reported[:3, :3]) - 1) / 2
     apart_rad = float(np.arccos(np.clip(cosine, -1, 1)))
-    if apart_m > tolerance_m or apart_rad > tolerance_rad:
+    if apart_m > tolerances[0] or apart_rad > tolerances[1]:
         raise WrongRobot(
             f"The arm is not the {arm.name} of the cell file: its controller puts the tool "
             f"{apart_m * 1000:.0f} mm and {np.degrees(apart_rad):.1f} degrees from where a {arm.name} would "

@@ -132,16 +132,24 @@ class StateMailbox:
         return count, np.frombuffer(memory, FIELDS, offset=_COUNT_BYTES)
 
 
-def robot_mode(raw: AnyArray) -> RobotMode:
+def known_robot_mode(number: int) -> RobotMode:
     """How far the arm is switched on; a number that nobody knows is not ready."""
-    number = int(raw["robot_mode"])
     return RobotMode(number) if number in set(RobotMode) else RobotMode.NO_CONTROLLER
 
 
-def safety_mode(raw: AnyArray) -> SafetyMode:
+def known_safety_mode(number: int) -> SafetyMode:
     """Whether the safety system lets the arm move; a number that nobody knows does not."""
-    number = int(raw["safety_mode"])
     return SafetyMode(number) if number in set(SafetyMode) else SafetyMode.UNDEFINED
+
+
+def robot_mode(raw: AnyArray) -> RobotMode:
+    """How far the arm is switched on, by a state of `FIELDS`."""
+    return known_robot_mode(int(raw["robot_mode"]))
+
+
+def safety_mode(raw: AnyArray) -> SafetyMode:
+    """Whether the safety system lets the arm move, by a state of `FIELDS`."""
+    return known_safety_mode(int(raw["safety_mode"]))
 
 
 _TOOL_OUTPUT_BIT = 16

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from enum import IntEnum
 
 import numpy.typing as npt
@@ -9,6 +10,7 @@ import numpy.typing as npt
 from core.motion.arm_models import ArmModel
 from hardware.modes import RobotMode, SafetyMode
 from hardware.simulation.ur_controller.arm import STOP_RAD_S2, Arm
+from hardware.simulation.ur_controller.foreign import ForeignProgram
 from hardware.simulation.ur_controller.identity import Identity
 from hardware.simulation.ur_controller.journal import Journal
 from hardware.simulation.ur_controller.motions import NoSolution
@@ -19,6 +21,7 @@ CONTROL_SCRIPT_MARK = "def rtde_control():"
 _SWITCHING_S = 1.0
 """Powering on and releasing the brakes; the real ones take longer, but nobody gains by waiting."""
 _UNLOCK_AFTER_S = 5.0
+_GAP_S = 0.1
 TOOL_OUTPUT_BIT = 16
 """Of the digital outputs 16 and 17 are the tool's."""
 
@@ -47,6 +50,7 @@ class Controller:
         robot_mode, safety_mode, runtime_state: as RTDE reports them.
         is_remote: whether it is in remote control (e-Series; always so on a CB3).
         ignores_uploads: a fault: scripts come and nothing happens.
+        tool_voltage_v: supply of the tool connector.
         ignores_outputs: a fault: outputs are written and nothing happens.
         digital_outputs: bits; 16 and 17 are the tool's.
     """
@@ -64,10 +68,12 @@ class Controller:
         self.runtime_state = RuntimeState.STOPPED
         self.is_remote = True
         self.ignores_uploads = False
+        self.tool_voltage_v = 24
         self.ignores_outputs = False
         self.digital_outputs = 0
         self._cycles = 0
-        self._program: ControlProgram | None = None
+        self._program: ControlProgram | ForeignProgram | None = None
+        self._stopped_until_s = 0.0
         self._stopped_at_s = 0.0
         self._switching: list[tuple[float, RobotMode]] = []
 
@@ -93,7 +99,11 @@ class Controller:
         is_control = CONTROL_SCRIPT_MARK in script
         taken = self._takes_scripts()
         self.journal.note("script", size=len(script), is_control_script=is_control, is_taken=taken)
-        if not taken or script.lstrip().startswith("sec "):
+        if not taken:
+            return
+        if script.lstrip().startswith("sec "):
+            voltage = re.search(r"set_tool_voltage\((\d+)\)", script)
+            self.tool_voltage_v = int(voltage[1]) if voltage else self.tool_voltage_v
             return
         self._end_program()
         if is_control:
@@ -102,6 +112,14 @@ class Controller:
             )
             self.arm.is_held = False
             self.runtime_state = RuntimeState.PLAYING
+
+    def run_foreign(self, is_moving: bool, has_gap: bool) -> None:
+        """Let another program take over, with or without a moment in which none runs."""
+        self._end_program()
+        self.journal.note("foreign program", is_moving=is_moving)
+        self._program = ForeignProgram(self.arm, is_moving)
+        self._stopped_until_s = self.time_s + (_GAP_S if has_gap else 0.0)
+        self.runtime_state = RuntimeState.STOPPED if has_gap else RuntimeState.PLAYING
 
     def stop(self) -> bool:
         """End the program; False if there is none."""
@@ -210,7 +228,10 @@ class Controller:
         self.runtime_state = RuntimeState.STOPPING
 
     def _advance_runtime(self) -> None:
-        if self.runtime_state is RuntimeState.STOPPING and not self.arm.is_moving:
+        if self.runtime_state is RuntimeState.STOPPED and self._program is not None:
+            if self.time_s >= self._stopped_until_s:
+                self.runtime_state = RuntimeState.PLAYING
+        elif self.runtime_state is RuntimeState.STOPPING and not self.arm.is_moving:
             self.runtime_state = RuntimeState.STOPPED
         elif self.runtime_state is RuntimeState.PAUSING and self.arm.is_paused:
             self.runtime_state = RuntimeState.PAUSED

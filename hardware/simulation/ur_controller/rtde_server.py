@@ -6,8 +6,6 @@ import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
 from core.geometry import FloatArray
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.pose_vectors import vector_from_pose
@@ -50,7 +48,7 @@ class Outputs:
         """Watch a controller."""
         self._controller = controller
         self._values: dict[str, Values] = {name: _zeros(kind) for name, kind in OUTPUT_TYPES.items()}
-        self._posed: tuple[FloatArray, ...] = (np.empty(0), np.empty(0), np.empty(0))
+        self._posed: tuple[object, ...] = (None,) * 4
 
     def refresh(self, names: Iterable[str]) -> dict[str, Values]:
         """Return the values of now; those that take time only if they are among the names."""
@@ -75,6 +73,7 @@ class Outputs:
         values["speed_scaling"] = (1.0,)
         values["target_speed_fraction"] = (c.arm.slider,)
         values["actual_digital_output_bits"] = (c.digital_outputs,)
+        values["tool_output_voltage"] = (c.tool_voltage_v,)
         values["payload"] = (c.arm.payload_kg,)
         values["payload_cog"] = c.arm.payload_center_m
         values["joint_mode"] = (_JOINT_RUNNING if is_powered else _JOINT_POWER_OFF,) * 6
@@ -96,7 +95,7 @@ class Outputs:
     def _refresh_poses(self) -> None:
         """The arm's kinematics take most of a cycle's time: they are left out while nothing has moved."""
         arm, values = self._controller.arm, self._values
-        posed = (arm.joints_rad, arm.target_rad, arm.T_flange_tcp)
+        posed = (arm.joints_rad, arm.target_rad, arm.T_flange_tcp, arm.model)
         is_same = all(new is old for new, old in zip(posed, self._posed, strict=True))
         is_still = not arm.speeds_rad_s.any() and not arm.target_speeds_rad_s.any()
         if is_same and is_still and values["actual_TCP_speed"] == (0.0,) * 6:

@@ -21,6 +21,7 @@ class StoppedOnce:
     """A pour that is stopped, recovers at the second attempt, backs off, and succeeds."""
 
     is_interrupted = False
+    robot = SimpleNamespace(pending_step=lambda: None)
 
     def __init__(self, stopped_by: Exception, asked: list[str]) -> None:
         self._errors = [stopped_by]
