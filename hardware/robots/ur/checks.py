@@ -98,11 +98,13 @@ def deviation(raw: AnyArray) -> RobotError | None:
     return tracking_lost(raw["joints_rad"], raw["target_joints_rad"][None], "where the controller wants it")
 
 
-def tracking_lost(joints_rad: FloatArray, asked_rad: FloatArray, what: str) -> TrackingLost | None:
-    """Say so when joints (6,) are farther than `TRACKING_RAD` from every one of the places (N, 6)."""
+def tracking_lost(
+    joints_rad: FloatArray, asked_rad: FloatArray, what: str, most_rad: float = TRACKING_RAD
+) -> TrackingLost | None:
+    """Say so when joints (6,) are farther than a limit from every one of the places (N, 6)."""
     apart = np.abs(asked_rad - joints_rad)
     nearest = apart[apart.max(axis=1).argmin()]
-    if nearest.max() <= TRACKING_RAD:
+    if nearest.max() <= most_rad:
         return None
     return TrackingLost(
         f"The {JOINT_NAMES[int(nearest.argmax())]} joint was {np.degrees(nearest.max()):.1f} degrees from "

@@ -90,12 +90,31 @@ FIELDS = np.dtype(
         ("runtime_state", "i8"),
         ("output_bits", "i8"),
         ("progress", "f8"),
+        ("due_s", "f8"),
     ]
 )
 """One state; `tool_pose` is metres and a rotation vector, `time_s` is `time.monotonic`, which all processes
-of a machine share, `progress` is the share of the present move."""
+of a machine share, `progress` is the share of the present move, `due_s` the `time.monotonic` by which the
+thread that makes the control calls should have been heard again."""
 
 _COUNT_BYTES = 8
+
+
+class Pulse:
+    """A counter that the driver keeps counting, so that its worker knows whether the program still runs."""
+
+    def __init__(self) -> None:
+        """Begin at 0, in memory that a spawned process shares when it is handed over."""
+        self._memory = SPAWN.RawArray("q", 1)
+
+    def beat(self) -> None:
+        """Count one on."""
+        self._memory[0] += 1
+
+    @property
+    def count(self) -> int:
+        """How often it beat."""
+        return int(self._memory[0])
 
 
 class StateMailbox:

@@ -74,6 +74,7 @@ class Controller:
         self._cycles = 0
         self._program: ControlProgram | ForeignProgram | None = None
         self._stopped_until_s = 0.0
+        self._is_hung = False
         self._stopped_at_s = 0.0
         self._switching: list[tuple[float, RobotMode]] = []
 
@@ -83,7 +84,9 @@ class Controller:
         self.time_s = self._cycles * self.dt_s
         self.journal.set_time(self.time_s)
         try:
-            if self._program is not None and self.runtime_state is RuntimeState.PLAYING:
+            if self._is_hung:
+                self.registers.ints[0] = 0
+            elif self._program is not None and self.runtime_state is RuntimeState.PLAYING:
                 self._program.step()
             self.arm.step(self.dt_s)
         except NoSolution as error:
@@ -120,6 +123,11 @@ class Controller:
         self._program = ForeignProgram(self.arm, is_moving)
         self._stopped_until_s = self.time_s + (_GAP_S if has_gap else 0.0)
         self.runtime_state = RuntimeState.STOPPED if has_gap else RuntimeState.PLAYING
+
+    def hang_program(self) -> None:
+        """Let the program take no further command, while it counts as running."""
+        self._is_hung = True
+        self.journal.note("program hangs")
 
     def stop(self) -> bool:
         """End the program; False if there is none."""
@@ -221,7 +229,7 @@ class Controller:
     def _end_program(self) -> None:
         if self._program is None:
             return
-        self._program = None
+        self._program, self._is_hung = None, False
         self.journal.note("end of program")
         self.arm.is_held = False
         self.arm.brake(STOP_RAD_S2)

@@ -10,6 +10,7 @@
 | `ignore uploads`, `heed uploads` | scripts come and nothing happens |
 | `take registers`, `release registers` | another client has every input |
 | `stick JOINT...`, `unstick` | joints (1 to 6) do not follow; they do again |
+| `program hangs` | it runs on but takes no further command |
 | `foreign still`, `foreign moving` | another program takes over without a gap; it stands, or turns the base |
 | `foreign gap still`, `foreign gap moving` | the same after a moment in which no program runs |
 | `output lost`, `ignore outputs`, `heed outputs` | the tool's outputs go off; writes do nothing; do again |
@@ -72,6 +73,7 @@ class FaultInjector:
             "remote": lambda: setattr(c, "is_remote", True),
             "ignore uploads": lambda: setattr(c, "ignores_uploads", True),
             "heed uploads": lambda: setattr(c, "ignores_uploads", False),
+            "program hangs": c.hang_program,
             "foreign still": lambda: c.run_foreign(is_moving=False, has_gap=False),
             "foreign moving": lambda: c.run_foreign(is_moving=True, has_gap=False),
             "foreign gap still": lambda: c.run_foreign(is_moving=False, has_gap=True),
