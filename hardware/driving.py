@@ -14,7 +14,7 @@ from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from hardware.errors import DeviceError, RobotError, RobotLost, TrackingLost
 from hardware.interfaces import Move, Robot, RobotState
-from hardware.modes import unreadiness
+from hardware.modes import SafetyMode, unreadiness
 
 SAME_PLACE_RAD = 2e-3
 AT_REST_RAD_S = 2e-3
@@ -71,6 +71,9 @@ class WatchedArm:
                 "The arm is not at rest where the plan starts (a joint is "
                 f"{np.degrees(apart_rad):.1f} degrees off); plan again."
             )
+        slow = slowness(state)
+        if slow:
+            self._reporter.warn(slow)
 
     def follow(
         self,
@@ -134,6 +137,20 @@ class WatchedArm:
             if is_at_rest or time.monotonic() > deadline_s:
                 return state
             time.sleep(_POLL_S)
+
+
+_FULL_SPEED, _STILL = 0.99, 0.005
+
+
+def slowness(state: RobotState) -> str:
+    """Say why the arm will be slower than planned; empty if it will not."""
+    if state.safety_mode is SafetyMode.REDUCED:
+        return "The safety system is in reduced mode, so the arm is slower than planned, or is stopped by it."
+    if state.speed_scaling < _STILL:
+        return "The speed slider is at 0: nothing moves until somebody raises it at the panel."
+    if state.speed_scaling < _FULL_SPEED:
+        return f"The speed slider is at {state.speed_scaling:.0%}: everything takes longer than planned."
+    return ""
 
 
 def refuse_unready(state: RobotState) -> None:

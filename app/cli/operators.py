@@ -48,6 +48,9 @@ class PrintingOperator:
     def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:
         """Nobody is asked: a stopped run has ended."""
 
+    def confirm_opening(self, gripper: str) -> None:
+        """Nobody is asked: a closed gripper is left as it is."""
+
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
         """Nobody is asked: a stopped run has ended."""
 
@@ -100,6 +103,16 @@ class TerminalOperator(PrintingOperator):
             file=sys.stderr,
         )
         self._confirm("Find and fix what stopped it. Then: make the arm ready again (it does not move)?")
+
+    def confirm_opening(self, gripper: str) -> None:
+        """Say what is known, and ask."""
+        print(
+            f"The {gripper} is closed: an earlier program was ended while the hand held something, perhaps "
+            "the cup, perhaps full. The arm does not move now. Hold what is in the hand, or put something "
+            "under it; afterwards put the cup, filled, on its station.",
+            file=sys.stderr,
+        )
+        self._confirm("Somebody holds it: open the gripper?")
 
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
         """Name the moves and ask."""

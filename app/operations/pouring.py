@@ -80,6 +80,10 @@ class Operator(ArmOperator, Protocol):
         """Whether a robot shall pour a cup as planned; `note` says why it is this pour."""
         ...
 
+    def confirm_opening(self, gripper: str) -> None:
+        """Whether a gripper that was found closed shall open where it is; the pour is planned from there."""
+        ...
+
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
         """Whether the arm shall back off, with the cup, along its checked path."""
         ...
@@ -152,6 +156,10 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
             "arm, or pour less."
         )
     with connected(open_arm(settings), operator) as arm:
+        if arm.gripper.is_closed and operator.is_present:
+            # left by an earlier program, whose plan to back off along is gone with it
+            operator.confirm_opening(arm.gripper.name)
+            arm.gripper.open()
         pouring = Pouring(arm, prepared.cell, target, session, pipeline.reporter)
         while True:
             cup = next_cup(session, target.digest, cups)
@@ -207,10 +215,14 @@ def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path
 
 def _recover(operator: Operator, pouring: Pouring, error: PoursightError) -> None:
     """Step by step, each confirmed: make the arm ready, back off with the cup, then plan again."""
-    recover(pouring, pouring.robot, operator, error)
-    moves = pouring.plan_back_off()
-    operator.confirm_back_off(moves)
-    pouring.back_off(moves)
+    while pouring.is_interrupted:
+        recover(pouring, pouring.robot, operator, error)
+        moves = pouring.plan_back_off()
+        operator.confirm_back_off(moves)
+        try:
+            pouring.back_off(moves)
+        except (DeviceError, Cancelled) as again:  # stopped once more, on the way back
+            error = again
     operator.backed_off()
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.errors import MotionError
+from core.errors import Cancelled, MotionError
 from core.motion.pour.cell import PourCell
 from core.motion.pour.checking import check_plan
 from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
@@ -127,6 +127,9 @@ class Pouring:
             RobotError: a person has to do something first; the sentence says what.
         """
         self._arm.robot.recover()
+        if self.last_run is not None:
+            with RunLog(self.last_run) as log:
+                log.event("recovered", "The arm was made ready again.")
 
     def plan_back_off(self) -> tuple[PlannedMove, ...]:
         """Plan backing off from where the arm was stopped: along the checked path, the cup to its station.
@@ -146,7 +149,7 @@ class Pouring:
         """Back off; return the run's folder. Raises as `carry_out` does."""
         assert self._interrupted is not None, "planned before"
         plan = self._interrupted[0]
-        folder = next_run_folder(self._session)
+        folder = self.last_run = next_run_folder(self._session)
         with RunLog(folder) as log:
             log.event("confirmed", "Backing off was confirmed.", plan=plan.digest, is_back_off=True)
             self._make(plan, moves, log)
@@ -218,6 +221,10 @@ class PourProcedure:
             for index, move in enumerate(self._moves):
                 self.current = index
                 self._make(move)
+        except Cancelled as request:
+            stopped = Cancelled("Stopped on request: the arm is at rest where it was stopped.")
+            self._log.stopped(stopped, self._watched.stop(), index=self.current)
+            raise stopped from request
         except BaseException as error:
             self._log.stopped(error, self._watched.stop(), index=self.current)
             raise

@@ -137,6 +137,21 @@ def test_a_gripper_that_never_closes_is_noticed_at_the_cup(rig):
     recovers(rig)
 
 
+@pytest.mark.parametrize("fault", ["program stop", "protective stop"])
+def test_a_second_stop_on_the_way_back_has_a_way_back_too(rig, fault):
+    thread = rig.pour_until("carry", 0.6)
+    rig.controller.command("program stop")
+    thread.join(HANG_S)
+    rig.pouring.recover()
+    moves = rig.pouring.plan_back_off()
+    rig.controller.command(f"when moving in 0.2 {fault}")
+    with pytest.raises(RobotError):
+        rig.pouring.back_off(moves)
+    assert rig.pouring.is_interrupted
+    assert rig.arm.gripper.is_closed
+    recovers(rig)
+
+
 def test_a_slow_link_costs_time_and_nothing_else(rig):
     rig.controller.command("latency 20 20")
     try:

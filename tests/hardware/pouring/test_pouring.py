@@ -8,16 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.errors import MotionError
+from core.errors import Cancelled, MotionError
 from core.motion.pour.plan import PourPlan
 from core.progress import Reporter
 from core.session.pour_runs import PourRun, pour_runs
 from hardware.cell import Arm
 from hardware.cell.scene import motion_scene, pour_cell
 from hardware.cell.settings import ARMS
-from hardware.driving import refuse_deviation
+from hardware.driving import refuse_deviation, slowness
 from hardware.errors import DeviceError, OutputChanged, TrackingLost
 from hardware.grippers.simulated import SimulatedGripper
+from hardware.modes import SafetyMode
 from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
 from tests.hardware.pouring.rig import a_target, quick_cell
@@ -174,3 +175,30 @@ def test_an_arm_off_its_path_is_stopped(fresh_plan):
     refuse_deviation(replace(state, joints_rad=trajectory.joints_rad[50] + 0.03), trajectory)
     with pytest.raises(TrackingLost, match="off its planned path"):
         refuse_deviation(replace(state, joints_rad=trajectory.joints_rad[50] + 0.3), trajectory)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, ""),
+        ({"speed_scaling": 0.4}, "slider is at 40%"),
+        ({"speed_scaling": 0.0}, "slider is at 0: nothing moves"),
+        ({"safety_mode": SafetyMode.REDUCED}, "reduced mode"),
+    ],
+)
+def test_what_makes_the_arm_slow_is_said(changes, said):
+    assert said in slowness(replace(an_arm().robot.state(), **changes))
+    assert bool(slowness(replace(an_arm().robot.state(), **changes))) is bool(said)
+
+
+def test_a_cancelled_pour_and_its_recovery_are_in_the_log(fresh_plan, tmp_path):
+    pouring = a_pouring(an_arm(), tmp_path)
+    pouring._reporter.cancel()
+    robot = pouring.robot
+    robot._is_instant = False
+    with pytest.raises(Cancelled, match="at rest where it was stopped") as stopped:
+        pouring.carry_out(fresh_plan)
+    assert stopped.value.remedy is None, "the same command would be refused"
+    pouring.recover()
+    kinds = [event["kind"] for event in PourRun.load(pouring.last_run).events]
+    assert kinds[-2:] == ["stopped", "recovered"]
