@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import re
 import threading
@@ -10,8 +11,6 @@ import time
 import numpy as np
 import pytest
 
-from core.motion.arm_models import UR5
-from core.motion.kinematics import flange_pose
 from hardware.cell import read_cell
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.cli.test_scan_command import COARSE, few_views
@@ -23,6 +22,8 @@ pytest.importorskip("rtde_control")
 
 HOME = read_cell().robot.home_rad
 SPEED_UP = 6.0
+PLACE = ("tool_x_m", "tool_y_m", "tool_z_m")
+ROWS = 8
 LIMIT_M_S = 0.25
 HURRIED = 1.15
 """A servo whose clock is hurried catches up with targets that come late."""
@@ -48,30 +49,12 @@ def state(controller):
     return json.loads(controller.command("state"))
 
 
-class Watch(threading.Thread):
-    """Measures how fast the flange is, by the controller's own clock."""
-
-    def __init__(self, controller):
-        super().__init__(daemon=True)
-        self._controller = controller
-        self._is_over = threading.Event()
-        self.fastest_m_s = 0.0
-
-    def __enter__(self):
-        self.start()
-        return self
-
-    def __exit__(self, *exception):
-        self._is_over.set()
-        self.join()
-
-    def run(self):
-        while not self._is_over.wait(0.005):
-            now = state(self._controller)
-            ahead_s = 1e-4
-            places = np.array(now["joints_rad"]) + np.outer([0, ahead_s], now["speeds_rad_s"])
-            here, there = flange_pose(UR5, places)[:, :3, 3]
-            self.fastest_m_s = max(self.fastest_m_s, float(np.linalg.norm(there - here)) / ahead_s)
+def fastest_m_s(folder):
+    """Of the tool, over a third of a second each: the servo of a hurried clock goes on in bursts."""
+    with (folder / "states.csv").open() as file:
+        rows = [[float(row[name]) for name in ("time_s", *PLACE)] for row in csv.DictReader(file)]
+    change = np.array(rows)[ROWS:] - np.array(rows)[:-ROWS]
+    return float((np.linalg.norm(change[:, 1:], axis=1) / change[:, 0]).max())
 
 
 def test_nothing_moves_without_a_confirmation(refused, words, controller, monkeypatch):
@@ -83,17 +66,15 @@ def test_nothing_moves_without_a_confirmation(refused, words, controller, monkey
 
 
 def test_the_route_is_shown_and_driven_slowly_and_logged(poursight, words, controller, tmp_path):
-    with Watch(controller) as watch:
-        code, out, err = poursight(*words, "--yes")
+    code, out, err = poursight(*words, "--yes")
     assert code == 0, err
     route = re.search(r"4 views in about \d+ s, no part of the arm faster than (\d\.\d+) m/s", out)
     assert route, out
     assert float(route[1]) <= LIMIT_M_S
-    assert 0.1 < watch.fastest_m_s <= LIMIT_M_S * HURRIED
+    assert 0.1 < fastest_m_s(tmp_path / "session/scans/0001") <= LIMIT_M_S * HURRIED
     events = [json.loads(line) for line in (tmp_path / "session/scans/0001/events.jsonl").open()]
     kinds = [event["kind"] for event in events]
     assert kinds == ["planned", "confirmed", "move", "move", "move", "move", "done"]
-    assert (tmp_path / "session/scans/0001/states.csv").stat().st_size > 1000
     assert "scan:" not in poursight(*words)[2], "it is not taken again, so nobody is asked"
 
 
