@@ -63,5 +63,9 @@ class ProgramStopped(RobotStopped):
     """The control program on the robot was stopped or paused."""
 
 
+class OutputChanged(RobotStopped):
+    """An output of the tool changed while the arm moved: the gripper may have let go."""
+
+
 class TrackingLost(RobotStopped):
     """The arm was not where it should have been and was stopped."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from enum import Enum
 from typing import Protocol
 
 import numpy.typing as npt
@@ -124,6 +125,16 @@ class Move(Protocol):
         ...
 
 
+class ReadyStep(Enum):
+    """What a person lets the program do before an arm can be connected; the values say what it does."""
+
+    END_PROGRAM = "end the program"
+    RESTART_SAFETY = "restart the safety system"
+    UNLOCK = "unlock the protective stop"
+    POWER_ON = "switch the power on"
+    RELEASE_BRAKES = "release the brakes"
+
+
 class Robot(_Device, Protocol):
     """A six-jointed arm. Every method is safe from any thread.
 
@@ -165,6 +176,21 @@ class Robot(_Device, Protocol):
 
     def stop(self) -> None:
         """Stop whatever moves; works while another call waits."""
+        ...
+
+    def pending_step(self) -> tuple[ReadyStep, str] | None:
+        """What has to be done before the arm can be connected, and why; none if that is nothing or not known.
+
+        Nothing is written to the controller.
+        """
+        ...
+
+    def take_step(self, step: ReadyStep) -> None:
+        """Do that; the arm follows no path.
+
+        Raises:
+            RobotError: it could not be done; the sentence says what a person has to do.
+        """
         ...
 
     def recover(self) -> None:

@@ -13,11 +13,15 @@ _NUMBERS = (signal.SIGINT, signal.SIGTERM)
 class Interrupts:
     """Calls a function, in a thread of its own, for each request to stop; used as a context manager.
 
+    Attributes:
+        was_terminated: whether one of them was SIGTERM, after which nobody is there to be asked.
+
     Python runs a signal's handler in the main thread, between two of its instructions: a long call into C
     would delay it. What the signal writes into a socket is read here meanwhile.
     """
 
     def __init__(self, heard: Callable[[], None]) -> None:
+        self.was_terminated = False
         self._heard = heard
 
     def __enter__(self) -> Interrupts:
@@ -40,6 +44,7 @@ class Interrupts:
     def _listen(self) -> None:
         while number := self._reading.recv(1):
             if number[0] in _NUMBERS:
+                self.was_terminated = self.was_terminated or number[0] == signal.SIGTERM
                 self._heard()
 
 

@@ -85,18 +85,20 @@ def scan(
     restart: Annotated[
         bool, typer.Option("--restart", help="Discard the views of an interrupted scan.")
     ] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="Let a real arm move without asking.")] = False,
     preset: PresetOption = None,
     settings: SetOption = None,
     workers: WorkersOption = None,
     seed: SeedOption = None,
 ) -> None:
-    """Scan an object from all sides with the robot; by default in the simulated cell."""
+    """Show the route, ask, and scan an object from all sides; by default in the simulated cell."""
     from app.cli import session_commands
     from app.cli.parameters import Choices
     from app.operations.scanning import ScanRequest
 
     request = ScanRequest(adaptive, tuple(retake or ()), restart)
-    session_commands.scan(session, cell, source, Choices(preset, settings or [], seed), workers, request)
+    choices = Choices(preset, settings or [], seed)
+    session_commands.scan(session, cell, source, choices, workers, request, yes)
 
 
 @app.command()

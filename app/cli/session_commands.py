@@ -11,7 +11,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from app.cli.arm_commands import PrintingOperator
+from app.cli.operators import PrintingOperator, TerminalOperator
 from app.cli.parameters import NOTHING_CHOSEN, Choices
 from app.cli.terminal import TerminalReporter, working
 from app.library.exchange import export_html, export_pdf, export_zip
@@ -55,11 +55,14 @@ def scan(
     choices: Choices,
     workers: int | None,
     request: ScanRequest,
+    is_confirmed: bool,
 ) -> None:
-    """Scan an object in a cell and say whether the scan is good enough."""
+    """Scan an object in a cell, with a real arm after a confirmation; say whether the scan is good enough."""
     settings = read_cell(cell_file or SIMULATED_CELL)
-    with working(session, choices, workers) as pipeline:
-        scan_object(pipeline, settings, source, request)
+    terminal = TerminalReporter()
+    operator = PrintingOperator(session) if is_confirmed else TerminalOperator(session, terminal)
+    with working(session, choices, workers, terminal=terminal) as pipeline:
+        scan_object(pipeline, settings, source, request, operator=operator)
         quality = pipeline.quality()
     print(f"{len(quality.views)} views in {session}.")
     for reason in quality.reasons:

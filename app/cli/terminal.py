@@ -17,7 +17,7 @@ from app.cli.interrupts import Interrupts
 from app.cli.parameters import Choices, print_difference
 from app.cli.remedies import REMEDIES
 from app.operations.session import SessionTask, working_on
-from core.errors import Remedy, SessionError
+from core.errors import Cancelled, Remedy, SessionError
 from core.imagination.imagination import WORKER_MODULE
 from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
@@ -132,7 +132,13 @@ class TerminalReporter(Reporter):
                 self._progress.start()
 
     def forget_cancel(self) -> None:
-        """Go on: what Ctrl-C was meant to stop has stopped."""
+        """Go on: what Ctrl-C was meant to stop has stopped; after SIGTERM nothing goes on.
+
+        Raises:
+            Cancelled: it was SIGTERM.
+        """
+        if self._interrupts.was_terminated:
+            raise Cancelled("Ended on request: what moved is at rest where it was stopped.")
         if self._leaving is not None:
             self._leaving.cancel()
         super().forget_cancel()

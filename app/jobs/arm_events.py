@@ -11,7 +11,20 @@ from app.jobs.messages import Status
 if TYPE_CHECKING:
     from core.geometry import FloatArray
     from core.motion.pour.plan import PlannedMove, PourPlan
-    from hardware.interfaces import RobotState
+    from hardware.interfaces import ReadyStep, RobotState
+
+
+@dataclass(frozen=True)
+class StepPending:
+    """The arm could not be connected before this is done; connecting again with it does it first.
+
+    Attributes:
+        step: what has to be done.
+        sentence: what is the case.
+    """
+
+    step: ReadyStep
+    sentence: str
 
 
 @dataclass(frozen=True)

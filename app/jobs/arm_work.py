@@ -9,7 +9,7 @@ from pathlib import Path
 from threading import Event as Flag
 from typing import TYPE_CHECKING
 
-from app.jobs.arm_events import ArmDisconnected, PlannedBackOff, PlannedPour, StopDone
+from app.jobs.arm_events import ArmDisconnected, PlannedBackOff, PlannedPour, StepPending, StopDone
 from app.jobs.messages import Event
 from app.jobs.service import JobReporter, Service
 from app.operations.session import SessionTask, working_on
@@ -20,6 +20,7 @@ from hardware.errors import RobotError, RobotNotReady
 if TYPE_CHECKING:
     from app.jobs.connected_arm import ConnectedArm, Offer
     from hardware.cell.settings import CellSettings
+    from hardware.interfaces import ReadyStep
 
 _STOP_ORDER_S = 0.2
 """The window also stops the controller directly, so its order to stop may come later than the stop."""
@@ -50,8 +51,10 @@ class ArmWork(Service):
         """Stop what moves and disconnect."""
         self._disconnect()
 
-    def connect(self, reporter: JobReporter, cell: CellSettings) -> None:
+    def connect(self, reporter: JobReporter, cell: CellSettings, step: ReadyStep | None = None) -> None:
         """Connect a cell's arm and gripper, instead of those that are connected; nothing moves.
+
+        A step that somebody confirmed is taken first; one that is in the way is published.
 
         Raises:
             DeviceError: one of them is not there or not ready.
@@ -63,7 +66,15 @@ class ArmWork(Service):
         with self._job(reporter):
             self._disconnect()
             arm = open_arm(cell)
-            arm.__enter__()
+            if step is not None:
+                arm.robot.take_step(step)
+            try:
+                arm.__enter__()
+            except RobotError:
+                pending = arm.robot.pending_step()
+                if pending is not None:
+                    reporter.publish(StepPending(*pending))
+                raise
             try:
                 reporter.raise_if_cancelled()
             except Cancelled:

@@ -37,6 +37,13 @@ class ViewsPlanned:
     views: tuple[ViewProgress, ...]
 
 
+@dataclass(frozen=True)
+class ScanQuestion:
+    """The scan waits until somebody resumes or cancels it; the sentence says what would happen."""
+
+    sentence: str
+
+
 @dataclass(frozen=True, eq=False)
 class ViewDone:
     """A view was taken, or could not be.

@@ -14,7 +14,7 @@ import numpy as np
 
 from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus, StopDone
 from app.jobs.messages import Event
-from app.jobs.scan_events import MeshGrown, ViewDone, ViewProgress, ViewsPlanned
+from app.jobs.scan_events import MeshGrown, ScanQuestion, ViewDone, ViewProgress, ViewsPlanned
 from app.jobs.service import JobReporter, Service
 from app.operations.scanning import Proposal, ScanObserver, ScanRequest, propose_views, scan_object
 from app.operations.session import SessionTask, working_on
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from core.reconstruction.tsdf import TsdfVolume
     from core.scan.model import RgbdFrame
     from hardware.cell import Cell, CellSettings
-    from hardware.interfaces import Robot
+    from hardware.interfaces import ReadyStep, Robot
     from hardware.scanning.procedure import ScanControl
+    from hardware.scanning.route import ScanRoute
     from hardware.scanning.views import ViewRecord
 
 _CLOSING_S = 1.5
@@ -114,7 +115,7 @@ class ScanWork(Service):
             observer = ScanObserver(running.control, opened, progress.planned, progress.taken)
             # A scan computes nothing in workers, so that none is started.
             with WorkerPool() as pool, working_on(task, pool, reporter) as pipeline:
-                scan_object(pipeline, cell, source, request, observer)
+                scan_object(pipeline, cell, source, request, observer, _PausingOperator(running))
 
     def propose(self, reporter: JobReporter, task: SessionTask, cell: CellSettings) -> Proposal:
         """Find out how many further views would show how much of the inside that the scan did not.
@@ -171,6 +172,34 @@ class ScanWork(Service):
             self._running = None
             self._was_stopped = False
             self._is_idle.set()
+
+
+class _PausingOperator:
+    """Asks by pausing the scan: whoever resumes it has seen what was published."""
+
+    is_present = True
+
+    def __init__(self, running: _Running) -> None:
+        self._running = running
+
+    def confirm_step(self, step: ReadyStep, why: str) -> None:
+        """Publish what is in the way and wait."""
+        self._ask(f"{why} Shall the program {step.value}?")
+
+    def confirm_route(self, route: ScanRoute, robot: str) -> None:
+        """Publish the route and wait."""
+        self._ask(f"The {robot} waits for your word: {route.sentence}")
+
+    def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:  # noqa: ARG002
+        """Publish what stopped the arm and wait; a scan that was cancelled has ended."""
+        if isinstance(error, Cancelled):
+            raise error
+        self._ask(f"{error} When that is done, the arm is made ready again; it does not move.")
+
+    def _ask(self, sentence: str) -> None:
+        self._running.control.pause()
+        self._running.reporter.publish(ScanQuestion(sentence))
+        self._running.control.wait_while_paused(self._running.reporter)
 
 
 class ScanReporter:

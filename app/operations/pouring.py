@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from app.operations.arm import ArmOperator, connected, recover
 from app.operations.choosing import described_cell, refuse_unfeasible
 from core.errors import Cancelled, InputError, MotionError, PoursightError, Remedy, StageError
 from core.imagination.advice import advice_against
@@ -72,13 +73,8 @@ class PreparedPour:
         return self.target
 
 
-class Operator(Protocol):
-    """The person at the arm. Each `confirm` raises `Cancelled` if the answer is no; then nothing moves."""
-
-    @property
-    def is_present(self) -> bool:
-        """Whether somebody refills the cup, and finds and fixes what stopped the arm."""
-        ...
+class Operator(ArmOperator, Protocol):
+    """The person at the arm that pours."""
 
     def prepared(self, prepared: PreparedPour) -> None:
         """Which pour will be made."""
@@ -92,11 +88,8 @@ class Operator(Protocol):
         """Whether a robot shall pour a cup as planned; `note` says why it is this pour."""
         ...
 
-    def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:
-        """Whether an arm that was stopped by `error`, or by a request to cancel, shall be made ready again.
-
-        It does not move. The request to cancel has been met: it is to be forgotten.
-        """
+    def confirm_opening(self, gripper: str) -> None:
+        """Whether a gripper that was found closed shall open where it is; the pour is planned from there."""
         ...
 
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
@@ -168,12 +161,16 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
         operator.confirm_doubtful(prepared.advice)
     session = pipeline.session.path
     cups = prepared.n_per_cup
-    if len(cups) > 1 and not operator.is_present and not settings.is_simulated:
+    if len(cups) > 1 and not operator.is_present and not settings.has_simulated_object:
         raise InputError(
             f"{len(cups)} cups are to be poured, and nobody would fill them; pour with an operator at the "
             "arm, or pour less."
         )
-    with open_arm(settings) as arm:
+    with connected(open_arm(settings), operator) as arm:
+        if arm.gripper.is_closed and operator.is_present:
+            # left by an earlier program, whose plan to back off along is gone with it
+            operator.confirm_opening(arm.gripper.name)
+            arm.gripper.open()
         pouring = Pouring(arm, prepared.cell, target, session, pipeline.reporter)
         while True:
             cup = next_cup(session, target.digest, cups)
@@ -239,23 +236,21 @@ def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path
 
 def _recover(operator: Operator, pouring: Pouring, error: PoursightError) -> None:
     """Step by step, each confirmed: make the arm ready, back off with the cup, then plan again."""
-    operator.confirm_recovery(error, is_repeated=False)
-    while True:
+    while pouring.is_interrupted:
+        recover(pouring, pouring.robot, operator, error)
+        moves = pouring.plan_back_off()
+        operator.confirm_back_off(moves)
         try:
-            pouring.recover()
-            break
-        except DeviceError as reason:
-            operator.confirm_recovery(reason, is_repeated=True)
-    moves = pouring.plan_back_off()
-    operator.confirm_back_off(moves)
-    pouring.back_off(moves)
+            pouring.back_off(moves)
+        except (DeviceError, Cancelled) as again:  # stopped once more, on the way back
+            error = again
     operator.backed_off()
 
 
 def _record_outcome(
     pipeline: Pipeline, operator: Operator, settings: CellSettings, folder: Path, cup: Cup
 ) -> None:
-    if settings.is_simulated:
+    if settings.has_simulated_object:
         from app.operations.outcome import simulated_outcome
 
         outcome: Outcome | None = simulated_outcome(pipeline, settings, folder)

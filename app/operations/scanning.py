@@ -8,19 +8,26 @@ from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from app.library.session_folder import UNFINISHED_SCAN
-from core.errors import InputError, StageError
+from app.operations.arm import ArmOperator, connected, recover
+from core.errors import Cancelled, InputError, StageError
 from core.progress import Reporter
+from hardware.errors import RobotError
 
 if TYPE_CHECKING:
     from core.mesh import TriangleMesh
     from core.pipeline.pipeline import Pipeline
     from hardware.cell import Cell, CellSettings
-    from hardware.scanning.procedure import ScanControl, ViewsPlanned, ViewTaken
+    from hardware.pouring.run_log import RunLog
+    from hardware.scanning.moving import WatchedMoving
+    from hardware.scanning.procedure import ScanControl, ScanProcedure, ViewsPlanned, ViewTaken
+    from hardware.scanning.route import ScanRoute
     from hardware.scanning.store import ScanStore
 
+SCAN_RUNS_FOLDER = "scans"
+"""Of a session: what a real arm did in each scan."""
 _WATCHED_SPEED_UP = 5.0
 """Whoever watches a simulated scan wants to see the arm move, but not for a minute."""
 
@@ -57,6 +64,14 @@ class ScanObserver:
     taken: ViewTaken
 
 
+class ScanOperator(ArmOperator, Protocol):
+    """The person at a real arm that scans."""
+
+    def confirm_route(self, route: ScanRoute, robot: str) -> None:
+        """Whether a robot shall go through the views as planned."""
+        ...
+
+
 @dataclass(frozen=True)
 class Proposal:
     """Views that would show more of the inside; what `propose_views` returns.
@@ -76,6 +91,7 @@ def scan_object(
     source: str | None,
     request: ScanRequest = ScanRequest(),
     observer: ScanObserver | None = None,
+    operator: ScanOperator | None = None,
 ) -> None:
     """Scan in a cell, continuing what was interrupted; nothing is done when the session holds this very scan.
 
@@ -85,6 +101,7 @@ def scan_object(
         source: for a simulated cell, a built-in object's name or a mesh file.
         request: what to do beyond that.
         observer: of whoever follows it; a simulated arm then moves where it would jump.
+        operator: confirms what a real arm does; without one nothing real moves.
 
     Raises:
         PoursightError: the sentence says what is in the way; no view that was taken is lost.
@@ -97,6 +114,8 @@ def scan_object(
             "A recorded scan cannot be taken again, nor can views be added to it; scan in another cell."
         )
     mesh = object_mesh(source, pipeline.reporter) if source is not None else None
+    if settings.robot.is_real and operator is None:
+        raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
     seed = pipeline.parameters.seed
     origin = _origin(settings, source, mesh, seed)
     is_done = pipeline.session.is_fresh("scan", {}, origin)
@@ -109,35 +128,77 @@ def scan_object(
         store.adopt(pipeline.session.folder("scan"))
     elif request.retake and not is_done:
         raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
-    _take(pipeline, settings, mesh, seed, store, request, observer)
+    with connected(
+        _open(settings if observer is None else _animated(settings), mesh, seed), operator
+    ) as cell:
+        _take(pipeline, cell, store, request, observer, operator)
     pipeline.keep_written_scan(store.publish, origin)
     store.remove()
 
 
 def _take(
     pipeline: Pipeline,
-    settings: CellSettings,
-    mesh: TriangleMesh | None,
-    seed: int,
+    cell: Cell,
     store: ScanStore,
     request: ScanRequest,
     observer: ScanObserver | None,
+    operator: ScanOperator | None,
 ) -> None:
-    from hardware.scanning.next_best_views import take_next_best_views
+    from hardware.pouring.run_log import RunLog
+    from hardware.scanning.moving import WatchedMoving
     from hardware.scanning.procedure import ScanProcedure
+
+    control, taken, planned = (
+        (None, None, None) if observer is None else (observer.control, observer.taken, observer.planned)
+    )
+    reporter = pipeline.reporter
+    with nullcontext() if observer is None else observer.opened(cell):
+        if operator is None or not cell.settings.robot.is_real:
+            _take_all(cell, ScanProcedure(cell, store, reporter, control, taken, planned), request)
+            return
+        robot = cell.robot.name
+        with RunLog(_next_run_folder(pipeline.session.path)) as log:
+            moving = WatchedMoving(cell, log, reporter, lambda route: operator.confirm_route(route, robot))
+            procedure = ScanProcedure(cell, store, reporter, control, taken, planned, moving)
+            _take_all_with_recovery(cell, procedure, moving, request, operator, log)
+
+
+def _take_all(cell: Cell, procedure: ScanProcedure, request: ScanRequest) -> None:
+    from hardware.scanning.next_best_views import take_next_best_views
     from hardware.scanning.views import name_views
 
-    with (
-        _open(settings if observer is None else _animated(settings), mesh, seed) as cell,
-        nullcontext() if observer is None else observer.opened(cell),
-    ):
-        followed = () if observer is None else (observer.control, observer.taken, observer.planned)
-        procedure = ScanProcedure(cell, store, pipeline.reporter, *followed)
-        procedure.take(name_views(cell.views_rad))
-        procedure.retake(request.retake)
-        if request.adaptive:
-            take_next_best_views(cell, procedure)
-        procedure.scan()  # refuses what is too little for a scan
+    procedure.take(name_views(cell.views_rad))
+    procedure.retake(request.retake)
+    if request.adaptive:
+        take_next_best_views(cell, procedure)
+    procedure.scan()  # refuses what is too little for a scan
+
+
+def _take_all_with_recovery(
+    cell: Cell,
+    procedure: ScanProcedure,
+    moving: WatchedMoving,
+    request: ScanRequest,
+    operator: ScanOperator,
+    log: RunLog,
+) -> None:
+    """After a stop: make the arm ready, plan from where it is, ask; what was taken is not taken again."""
+    while True:
+        try:
+            _take_all(cell, procedure, request)
+            log.event("done", "All views were taken.")
+            return
+        except (RobotError, Cancelled) as error:
+            if not operator.is_present or not moving.was_stopped:
+                raise
+            recover(cell.robot, cell.robot, operator, error)
+            log.event("recovered", "The arm was made ready again.")
+
+
+def _next_run_folder(session: Path) -> Path:
+    """For the log of the arm's motions; one each time that the devices are opened."""
+    runs = session / SCAN_RUNS_FOLDER
+    return runs / f"{len(list(runs.glob('[0-9]*'))) + 1:04d}"
 
 
 def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
@@ -229,7 +290,7 @@ def _unconnected(settings: CellSettings) -> Cell:
     from hardware.cell import open_cell
     from hardware.simulation.world import World
 
-    if not settings.is_simulated:
+    if not settings.has_simulated_object:
         return open_cell(settings)
     table_m = np.array([*settings.place.platform_center_m[:2], settings.place.table_height_m])
     return open_cell(settings, World(None, table_m))

@@ -29,3 +29,13 @@ def quantity(
 def choice(default: Any, doc: str, *, source: str) -> Any:
     """Declare a word out of a few (its type is a `Literal`) or a yes/no."""
     return Field(default, description=doc, json_schema_extra={"unit": "", "source": source})
+
+
+def declaration(doc: str, *, source: str) -> Any:
+    """Declare a yes/no that is no by default, and is not written then: records of before stay the same."""
+    return Field(
+        False,
+        description=doc,
+        exclude_if=lambda is_so: not is_so,
+        json_schema_extra={"unit": "", "source": source},
+    )

@@ -109,10 +109,11 @@ def open_cell(settings: CellSettings, world: World | None = None, seed: int = 0)
     Raises:
         InputError: a simulated cell without a world, a real one with it, or a device of an unknown kind.
     """
-    if settings.is_simulated != (world is not None):
-        if settings.is_simulated:
+    if settings.has_simulated_object != (world is not None):
+        if settings.has_simulated_object:
             raise InputError(
-                f"The {settings.name} is simulated, and no object was chosen for it.", Remedy.CHOOSE_OBJECT
+                f"The camera of the {settings.name} is simulated, and no object was chosen for it.",
+                Remedy.CHOOSE_OBJECT,
             )
         raise InputError(
             f"The {settings.name} is real: it scans the object on its platform, not a chosen one.",

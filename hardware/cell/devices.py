@@ -92,16 +92,15 @@ def scan_devices(settings: CellSettings, world: World | None, seed: int) -> tupl
     Raises:
         InputError: there is no driver for a device's kind.
     """
-    if world is not None:
-        arm = _kinematic(settings)
-        noise = None if settings.simulation.is_perfect else settings.simulation.noise
-        return SimulatedCamera(world, arm, settings.camera.pose, noise, seed), arm, SimulatedGripper()
-    camera = real_camera(settings)
-    if isinstance(camera, ReplayCamera):
-        return camera, ReplayRobot(camera, settings.camera.pose), SimulatedGripper()
+    if settings.robot.kind == "replay":
+        recorded = ReplayCamera(settings.camera.replayed)
+        return recorded, ReplayRobot(recorded, settings.camera.pose), SimulatedGripper()
     robot = _of_kind(_ROBOTS, "robot", settings.robot.kind)(settings)
     gripper = real_gripper(settings, robot) if isinstance(robot, UR5Robot) else SimulatedGripper()
-    return camera, robot, gripper
+    if world is None:
+        return real_camera(settings), robot, gripper
+    noise = None if settings.simulation.is_perfect else settings.simulation.noise
+    return SimulatedCamera(world, robot, settings.camera.pose, noise, seed), robot, gripper
 
 
 def _unknown_kind(device: str, kind: str, known: Iterable[str]) -> InputError:

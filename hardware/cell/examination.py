@@ -17,6 +17,7 @@ from hardware.cell.devices import real_arm, real_camera
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import ARMS, CellSettings
 from hardware.interfaces import Camera
+from hardware.modes import unreadiness
 from hardware.simulation.world import World
 
 SAME_VIEW_M, SAME_VIEW_RAD = 0.03, np.radians(5.0)
@@ -47,12 +48,18 @@ def _robot(settings: CellSettings) -> Finding:
         return Finding("robot", f"{robot.kind} {robot.model}")
     subject = f"{robot.model} at {robot.address}"
     try:
-        with real_arm(settings) as arm:
-            state, version = arm.state(), ".".join(map(str, arm.controller_version))
+        arm = real_arm(settings)
+        seen = arm.look()
+        pending = arm.pending_step()
     except PoursightError as error:
         return Finding("robot", subject, str(error))
-    modes = f"{state.robot_mode.words}, safety {state.safety_mode.words}"
-    return Finding("robot", f"{subject}, controller {version}, {modes}, its kinematics agree")
+    version = ".".join(map(str, arm.controller_version))
+    modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}, speed slider {seen.slider:.0%}"
+    agree = "are only known when it is connected" if seen.tool_offset is None else "agree"
+    said = f"{subject}, controller {version}, {modes}, its kinematics {agree}"
+    unready = unreadiness(seen.safety_mode, seen.robot_mode)
+    problem = pending[1] if pending is not None else None if unready is None else str(unready)
+    return Finding("robot", said, problem)
 
 
 def _camera(settings: CellSettings) -> Finding:
@@ -71,7 +78,7 @@ def _camera(settings: CellSettings) -> Finding:
 
 def _camera_of(settings: CellSettings) -> Camera:
     """The cell's camera; a simulated one looks at an empty cell from where the arm rests."""
-    if not settings.is_simulated:
+    if not settings.has_simulated_object:
         return real_camera(settings)
     table_m = np.array([*settings.place.platform_center_m[:2], settings.place.table_height_m])
     return open_cell(settings, World(None, table_m)).camera

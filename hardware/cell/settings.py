@@ -14,7 +14,7 @@ from core.errors import InputError
 from core.geometry import FloatArray, rotation_error
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.pour.cell import MotionSettings
-from core.parameters.fields import OURS, Group, choice, quantity
+from core.parameters.fields import OURS, Group, choice, declaration, quantity
 from core.resources import RESOURCES
 from core.scan.model import CropBox, Intrinsics
 from hardware.simulation.depth_noise import DepthNoise
@@ -314,19 +314,31 @@ class CellSettings(Group):
     obstacles: tuple[BoxSettings, ...] = ()
     scan: ScanSettings
     simulation: SimulationSettings = SimulationSettings()
+    is_rehearsal: bool = declaration(
+        "The arm at the address is driven while a simulated camera sees an object that is not there.",
+        source=_CELL,
+    )
 
     @property
     def is_simulated(self) -> bool:
         """Whether no real device takes part."""
+        return self.has_simulated_object and not self.robot.is_real
+
+    @property
+    def has_simulated_object(self) -> bool:
+        """Whether the object, and what becomes of the candies, are simulated."""
         return self.camera.kind == "simulated"
 
     @model_validator(mode="after")
     def _devices_fit(self) -> CellSettings:
         if (self.camera.kind == "replay") != (self.robot.kind == "replay"):
             raise ValueError("camera and robot must both be of kind 'replay', or neither")
-        if self.camera.kind == "simulated" and self.robot.kind != "simulated":
+        if self.is_rehearsal != (self.has_simulated_object and self.robot.is_real):
             raise ValueError(
-                "a simulated camera sees nothing from a real robot; set robot.kind to 'simulated'"
+                "a simulated camera sees nothing from a real robot; set robot.kind to 'simulated', or "
+                "is_rehearsal to true for a robot that goes to an object that is not there"
+                if self.has_simulated_object
+                else "a rehearsal has a simulated camera and a real robot's driver"
             )
         return self
 

@@ -8,25 +8,24 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from core.errors import MotionError
+from core.errors import Cancelled, MotionError
 from core.motion.pour.cell import PourCell
 from core.motion.pour.checking import check_plan
 from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
 from core.motion.pour.planning import plan_pour
 from core.motion.pour.recovery import plan_back_off
-from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from core.session import explained
 from core.session.pour_runs import next_run_folder
 from hardware.cell import Arm
-from hardware.errors import DeviceError, RobotError, RobotLost, TrackingLost
-from hardware.interfaces import Move, RobotState
-from hardware.modes import unreadiness
+from hardware.driving import SAME_PLACE_RAD, WatchedArm
+from hardware.errors import DeviceError, OutputChanged, RobotError
+from hardware.interfaces import Robot, RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
 PLAN_FOLDER = "plan"
@@ -34,16 +33,6 @@ SENT_FILE = "controller.json"
 """The newest of what a simulated controller received."""
 _NEWEST = 2000
 STAGE = "pour"
-SAME_PLACE_RAD = 2e-3
-AT_REST_RAD_S = 2e-3
-MOST_TIMES_PLANNED = 10.0
-"""With the speed slider at 10 % a move takes ten times as long; beyond that something holds the arm."""
-PATIENCE_S = 10.0
-REST_WITHIN_S = 1.0
-MAX_AGE_S = 0.5
-MAX_DEVIATION_RAD = 0.06
-"""A servoed arm lags on its path, which is not a deviation from it."""
-_POLL_S = 0.005
 
 
 @dataclass(frozen=True)
@@ -72,6 +61,11 @@ class Pouring:
         self._session = session
         self._reporter = reporter
         self._interrupted: tuple[PourPlan, tuple[PlannedMove, ...], int] | None = None
+
+    @property
+    def robot(self) -> Robot:
+        """That pours."""
+        return self._arm.robot
 
     @property
     def is_interrupted(self) -> bool:
@@ -133,6 +127,9 @@ class Pouring:
             RobotError: a person has to do something first; the sentence says what.
         """
         self._arm.robot.recover()
+        if self.last_run is not None:
+            with RunLog(self.last_run) as log:
+                log.event("recovered", "The arm was made ready again.")
 
     def plan_back_off(self) -> tuple[PlannedMove, ...]:
         """Plan backing off from where the arm was stopped: along the checked path, the cup to its station.
@@ -143,13 +140,16 @@ class Pouring:
         assert self._interrupted is not None, "requested only after a stop on the path"
         plan, moves, index = self._interrupted
         joints_rad = self._arm.robot.state().joints_rad
-        return plan_back_off(plan, moves, index, joints_rad)
+        back = plan_back_off(plan, moves, index, joints_rad)
+        if self._arm.gripper.is_closed:
+            return back
+        return tuple(replace(move, holds_cup=False) for move in back)  # it let go
 
     def back_off(self, moves: tuple[PlannedMove, ...]) -> Path:
         """Back off; return the run's folder. Raises as `carry_out` does."""
         assert self._interrupted is not None, "planned before"
         plan = self._interrupted[0]
-        folder = next_run_folder(self._session)
+        folder = self.last_run = next_run_folder(self._session)
         with RunLog(folder) as log:
             log.event("confirmed", "Backing off was confirmed.", plan=plan.digest, is_back_off=True)
             self._make(plan, moves, log)
@@ -202,6 +202,7 @@ class PourProcedure:
     def __init__(self, arm: Arm, moves: Sequence[PlannedMove], log: RunLog, reporter: Reporter) -> None:
         self.current = -1
         self._arm = arm
+        self._watched = WatchedArm(arm.robot, log, reporter)
         self._moves = tuple(moves)
         self._log = log
         self._reporter = reporter
@@ -216,27 +217,20 @@ class PourProcedure:
             DeviceError: the robot or the gripper; the sentence says what happened and what to do.
         """
         try:
-            self._refuse_elsewhere()
+            self._watched.refuse_elsewhere(self._moves[0].trajectory.start_rad)
             for index, move in enumerate(self._moves):
                 self.current = index
                 self._make(move)
+        except Cancelled as request:
+            stopped = Cancelled("Stopped on request: the arm is at rest where it was stopped.")
+            self._log.stopped(stopped, self._watched.stop(), index=self.current)
+            raise stopped from request
         except BaseException as error:
-            self._stop(error)
+            self._log.stopped(error, self._watched.stop(), index=self.current)
             raise
         self._log.event("done", "All moves were executed.")
 
-    def _refuse_elsewhere(self) -> None:
-        """The arm must be at rest where the first move starts: plans are made from there."""
-        state = self._ready_state()
-        apart_rad = np.abs(state.joints_rad - self._moves[0].trajectory.start_rad).max()
-        if apart_rad > SAME_PLACE_RAD or np.abs(state.joint_speeds_rad_s).max() > AT_REST_RAD_S:
-            raise TrackingLost(
-                "The arm is not at rest where the plan starts (a joint is "
-                f"{np.degrees(apart_rad):.1f} degrees off); plan again."
-            )
-
     def _make(self, move: PlannedMove) -> None:
-        self._ready_state()
         self._log.event(
             "move",
             f"{move.label}: {move.trajectory.duration_s:.1f} s.",
@@ -244,36 +238,24 @@ class PourProcedure:
             name=move.name,
             phase=move.phase.value,
         )
-        handle = self._arm.robot.follow(move.trajectory)
-        self._watch(handle, move)
-        handle.wait(REST_WITHIN_S)
-        self._log.state(move.name, self._ready_state())
-        self._done_s += move.trajectory.duration_s
+        duration_s = move.trajectory.duration_s
+
+        def watch(_state: RobotState, progress: float) -> None:
+            self._refuse_empty_hand(move)
+            self._reporter.progress(STAGE, self._done_s + progress * duration_s, self._total_s)
+
+        self._refuse_empty_hand(move)
+        self._watched.follow(move.trajectory, move.name, move.label, watch)
+        self._done_s += duration_s
         if move.gripper_after is not None:
             self._grip(move.gripper_after == "close")
 
-    def _watch(self, handle: Move, move: PlannedMove) -> None:
-        duration_s = move.trajectory.duration_s
-        deadline_s = time.monotonic() + MOST_TIMES_PLANNED * duration_s + PATIENCE_S
-        while not handle.is_done:
-            self._reporter.raise_if_cancelled()
-            state = self._ready_state()
-            self._log.state(move.name, state)
-            refuse_deviation(state, move.trajectory)
-            self._reporter.progress(STAGE, self._done_s + handle.progress * duration_s, self._total_s)
-            if time.monotonic() > deadline_s:
-                raise RobotError(
-                    f"The arm did not finish '{move.label}' in time and was stopped; find out what holds it."
-                )
-            time.sleep(_POLL_S)
-
-    def _ready_state(self) -> RobotState:
-        state = self._arm.robot.state()
-        if state.age_s > MAX_AGE_S:
-            # this computer was suspended since then, and the arm may have reported more
-            state = self._arm.robot.state()
-        refuse_unready(state)
-        return state
+    def _refuse_empty_hand(self, move: PlannedMove) -> None:
+        if move.holds_cup and not self._arm.gripper.is_closed:
+            raise OutputChanged(
+                f"The {self._arm.gripper.name} is open while it should hold the cup, so the arm was stopped; "
+                "see to the cup, the cable and the 24 V supply."
+            )
 
     def _grip(self, is_closing: bool) -> None:
         gripper = self._arm.gripper
@@ -287,55 +269,3 @@ class PourProcedure:
                 f"The {gripper.name} did not confirm that it {done}; check its cable and its 24 V supply."
             )
         self._log.event("gripper", f"The gripper {done}.", is_closed=is_closing)
-
-    def _stop(self, error: BaseException) -> None:
-        with suppress(DeviceError):
-            self._arm.robot.stop()
-        joints_rad = None
-        with suppress(DeviceError):
-            joints_rad = self._wait_for_rest().joints_rad.tolist()
-        self._log.event(
-            "stopped",
-            str(error) or type(error).__name__,
-            error=type(error).__name__,
-            index=self.current,
-            joints_rad=joints_rad,
-        )
-
-    def _wait_for_rest(self) -> RobotState:
-        deadline_s = time.monotonic() + REST_WITHIN_S
-        while True:
-            state = self._arm.robot.state()
-            is_at_rest = np.abs(state.joint_speeds_rad_s).max() < AT_REST_RAD_S
-            if is_at_rest or time.monotonic() > deadline_s:
-                return state
-            time.sleep(_POLL_S)
-
-
-def refuse_unready(state: RobotState) -> None:
-    """Refuse a state in which the arm must not be commanded.
-
-    Raises:
-        RobotError: its kind and sentence say why.
-    """
-    if state.age_s > MAX_AGE_S:
-        raise RobotLost(
-            f"The arm has not reported for {state.age_s:.1f} s; look at it, and check its network cable."
-        )
-    unready = unreadiness(state.safety_mode, state.robot_mode)
-    if unready is not None:
-        raise unready
-
-
-def refuse_deviation(state: RobotState, trajectory: JointTrajectory) -> None:
-    """Refuse a state that is off the path.
-
-    Raises:
-        TrackingLost: a joint is too far from every sample of the path.
-    """
-    deviation_rad = float(np.abs(trajectory.joints_rad - state.joints_rad).max(axis=1).min())
-    if deviation_rad > MAX_DEVIATION_RAD:
-        raise TrackingLost(
-            f"The arm is {np.degrees(deviation_rad):.1f} degrees off its planned path and was stopped; "
-            "find out what holds or pushes it."
-        )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import datetime, timezone
@@ -88,6 +89,13 @@ class RunLog:
         with explained(self.folder):
             self._events.write(line + "\n")
             self._events.flush()
+            os.fsync(self._events.fileno())
+
+    def stopped(self, error: BaseException, joints_rad: FloatArray | None, **facts: Any) -> None:
+        """Log what stopped the arm, and where (6,) it is at rest; none if it does not answer."""
+        where = None if joints_rad is None else joints_rad.tolist()
+        kind = type(error).__name__
+        self.event("stopped", str(error) or kind, error=kind, joints_rad=where, **facts)
 
     def state(self, move: str, state: RobotState) -> None:
         """Log a state of the robot, if the last one is old enough by the controller's clock."""

@@ -13,7 +13,7 @@ from core.motion.arm_models import ArmModel
 from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
-from hardware.interfaces import RobotState
+from hardware.interfaces import ReadyStep, RobotState
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.joint_motion import JointMotion, TrajectoryMotion, checked_path
 
@@ -87,6 +87,12 @@ class KinematicRobot:
         with self._lock:
             self._is_stopped = True
             self._brake()
+
+    def pending_step(self) -> None:
+        """Nothing: it is always ready."""
+
+    def take_step(self, step: ReadyStep) -> None:
+        """Nothing to do."""
 
     def recover(self) -> None:
         """Take moves again; what was stopped does not go on."""

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from core.geometry import FloatArray, invert_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.cameras.replay import ReplayCamera
-from hardware.interfaces import RobotState
+from hardware.interfaces import ReadyStep, RobotState
 from hardware.modes import RobotMode, SafetyMode
 
 
@@ -56,6 +56,12 @@ class ReplayRobot:
 
     def stop(self) -> None:
         """Nothing moves."""
+
+    def pending_step(self) -> None:
+        """Nothing: there is no arm."""
+
+    def take_step(self, step: ReadyStep) -> None:
+        """Nothing to do."""
 
     def recover(self) -> None:
         """Nothing was stopped."""

@@ -11,7 +11,6 @@ import numpy as np
 
 from core.errors import MotionError, Remedy, StageError
 from core.geometry import FloatArray
-from core.motion.joint_path import RouteSettings, find_route
 from core.progress import Reporter
 from core.quality.cavity import empty_coarse_volume, fuse_coarsely
 from core.quality.view_quality import ViewQuality, check_view
@@ -19,19 +18,23 @@ from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics, RgbdFrame, Scan
 from hardware.cell import Cell
 from hardware.errors import CameraError, CameraLost, RobotError
-from hardware.interfaces import CameraImage, Move
+from hardware.interfaces import CameraImage
+from hardware.scanning.moving import (
+    MOVE_TIMEOUT_S,
+    POLL_S,
+    RESTING_RAD_S,
+    SAME_PLACE_RAD,
+    Moving,
+    NoMoving,
+    PlainMoving,
+)
 from hardware.scanning.store import ScanStore
 from hardware.scanning.views import PlannedView, ViewRecord, ViewState
 
 STAGE = "scan"
-RESTING_RAD_S = 1e-3
-SAME_PLACE_RAD = 1e-3
 MOST_FAILURES_IN_A_ROW = 3
-MOVE_TIMEOUT_S = 60.0
-STOP_TIMEOUT_S = 1.5
 RECONNECT_WAIT_S = 0.5
 FEWEST_VIEWS = 3
-_POLL_S = 0.02
 
 ViewTaken = Callable[[ViewRecord, RgbdFrame | None, TsdfVolume], None]
 """Called after each view: what became of it, its images (none if it failed), and everything fused so far
@@ -67,7 +70,7 @@ class ScanControl:
             Cancelled: on request.
         """
         reporter.raise_if_cancelled()
-        while not self._may_go_on.wait(_POLL_S):
+        while not self._may_go_on.wait(POLL_S):
             reporter.raise_if_cancelled()
 
 
@@ -87,8 +90,11 @@ class ScanProcedure:
         control: ScanControl | None = None,
         taken: ViewTaken | None = None,
         planned: ViewsPlanned | None = None,
+        moving: Moving | None = None,
     ) -> None:
         """Begin, or continue what the store's folder holds; without a store nothing goes to the disk.
+
+        A real arm needs a `moving` that asks; without one only an arm that is not real moves.
 
         Raises:
             SessionError: the folder holds another scan, or cannot be written.
@@ -102,6 +108,7 @@ class ScanProcedure:
         self._control = control or ScanControl()
         self._taken = taken
         self._planned = planned
+        self._moving = moving or self._unwatched()
         self._frames: dict[str, RgbdFrame] = {}
         self._intrinsics: Intrinsics | None = None
         self._last: RgbdFrame | None = None
@@ -120,6 +127,7 @@ class ScanProcedure:
         """
         self._plan(views)
         wanted = {view.name for view in views}
+        self._moving.prepare([r.view for r in self.records if r.view.name in wanted and not r.has_image])
         failures = 0
         for index, record in enumerate(self.records):
             if record.view.name not in wanted or record.has_image:
@@ -145,6 +153,7 @@ class ScanProcedure:
         for name in names:
             if name not in known:
                 raise StageError(f"The scan has no view '{name}'; its views are {', '.join(known)}.")
+        self._moving.prepare([self.records[known[name]].view for name in names])
         for name in names:
             self._control.wait_while_paused(self._reporter)
             index = known[name]
@@ -184,6 +193,10 @@ class ScanProcedure:
     def _n_taken(self) -> int:
         return sum(record.has_image for record in self.records)
 
+    def _unwatched(self) -> Moving:
+        assert not self._cell.settings.robot.is_real, "a real arm moves along a confirmed route only"
+        return NoMoving() if self._is_replay else PlainMoving(self._cell, self._reporter)
+
     def _recover(self, store: ScanStore) -> None:
         """Continue an interrupted scan; a view recorded but not whole on the disk is taken again."""
         left = store.recover(self.records)
@@ -204,9 +217,11 @@ class ScanProcedure:
     def _take_one(self, view: PlannedView) -> ViewRecord:
         """Move there and shoot, with a bound on the tries."""
         try:
-            self._go(np.array(view.joints_rad))
+            self._moving.go(view)
         except MotionError as error:
             return ViewRecord(view, ViewState.FAILED, (str(error),))
+        if not self._is_replay:
+            self._settle(np.array(view.joints_rad))
         problems: tuple[str, ...] = ()
         for attempt in range(self._cell.settings.scan.tries):
             self._reporter.raise_if_cancelled()
@@ -226,54 +241,6 @@ class ScanProcedure:
                 return self._store_view(view, frame, image.intrinsics, problems)
         return ViewRecord(view, ViewState.FAILED, problems)
 
-    def _go(self, joints_rad: FloatArray) -> None:
-        robot, settings = self._cell.robot, self._cell.settings
-        here = robot.state().joints_rad
-        if self._is_replay or np.abs(here - joints_rad).max() < SAME_PLACE_RAD:
-            return
-        options = RouteSettings(
-            min_clearance_m=settings.scan.min_clearance_m, via_rad=(settings.robot.home_rad,)
-        )
-        path = find_route(self._cell.scene, here, joints_rad, options)
-        speed, acceleration = settings.robot.joint_speed_rad_s, settings.robot.joint_acceleration_rad_s2
-        move = robot.move_joints(path, speed, acceleration)
-        self._follow(move)
-        self._settle(joints_rad)
-
-    def _follow(self, move: Move) -> None:
-        """Wait until the move is over; stop the arm when somebody wants the scan to end."""
-        deadline_s = time.monotonic() + MOVE_TIMEOUT_S
-        try:
-            while not move.is_done:
-                self._reporter.raise_if_cancelled()
-                if time.monotonic() > deadline_s:
-                    raise RobotError(
-                        f"The {self._cell.robot.name} did not arrive within {MOVE_TIMEOUT_S:.0f} s and was "
-                        "stopped; find and remove what blocks it.",
-                        Remedy.CONTINUE,
-                    )
-                time.sleep(_POLL_S)
-            move.wait(_POLL_S)
-        except BaseException:
-            with suppress(RobotError):
-                move.stop()
-                self._wait_for_rest()
-            raise
-
-    def _wait_for_rest(self) -> None:
-        """Wait until a stopped arm is at rest; a scan that goes on at once would find it moving.
-
-        It is when two looks in succession say so: at the first one it may still come to rest.
-        """
-        deadline_s = time.monotonic() + STOP_TIMEOUT_S
-        was_slow = False
-        while time.monotonic() < deadline_s:
-            is_slow = np.abs(self._cell.robot.state().joint_speeds_rad_s).max() <= RESTING_RAD_S
-            if is_slow and was_slow:
-                return
-            was_slow = is_slow
-            time.sleep(_POLL_S)
-
     def _settle(self, joints_rad: FloatArray) -> None:
         """Wait until the arm has been at rest for a while, at its target."""
         settle_s = 0.0 if self._is_instant else self._cell.settings.scan.settle_s
@@ -290,7 +257,7 @@ class ScanProcedure:
             elif time.monotonic() - since_s >= settle_s:
                 break
             self._reporter.raise_if_cancelled()
-            time.sleep(_POLL_S)
+            time.sleep(POLL_S)
         if np.abs(state.joints_rad - joints_rad).max() > SAME_PLACE_RAD:
             raise RobotError(f"The {self._cell.robot.name} is not where it was sent; see what holds it.")
 

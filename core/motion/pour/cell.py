@@ -47,7 +47,7 @@ class MotionSettings(Group):
     )
     tool_speed_m_s: float = quantity(
         0.25,
-        "Speed of the cup outside the pour rotation.",
+        "Speed of the cup outside the pour rotation, and of every part of a real arm in a scan.",
         unit="m/s",
         source="ISO 10218-1, reduced speed",
         low=0.01,

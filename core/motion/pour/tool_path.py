@@ -11,6 +11,7 @@ import numpy as np
 
 from core.errors import MotionError
 from core.geometry import FloatArray
+from core.motion.clearance import MotionScene
 from core.motion.joint_path import STEP_RAD
 from core.motion.kinematics import TURN_RAD, inverse_kinematics
 from core.motion.pour.cell import MotionSettings
@@ -129,6 +130,31 @@ def _continued(joints_rad: FloatArray, start_rad: FloatArray) -> FloatArray:
 
 def joint_trajectory(scene: PourScene, corners_rad: FloatArray, limits: SpeedLimits) -> JointTrajectory:
     """Straight joint moves through configurations (M, 6), at rest at each."""
+
+    def timed(shares: FloatArray, samples: FloatArray) -> FloatArray:
+        return timed_points(shares, samples, scene.hand_points(scene.grasp_poses(samples)), limits)
+
+    return _through_corners(corners_rad, timed)
+
+
+def slow_joint_trajectory(
+    scene: MotionScene, corners_rad: FloatArray, limits: SpeedLimits
+) -> JointTrajectory:
+    """The same, with no point of arm and tools faster than the limit of the tool's speed."""
+
+    def timed(shares: FloatArray, samples: FloatArray) -> FloatArray:
+        points_m = scene.capsule_ends(samples).reshape(len(samples), -1, 3)
+        slopes = np.linalg.norm(np.gradient(points_m, shares, axis=0), axis=2).max(axis=1)
+        top_rate = _SHARE * limits.tool_speed_m_s / np.maximum(slopes, _TINY)
+        return timed_points(shares, samples, points_m, limits, top_rate)
+
+    return _through_corners(corners_rad, timed)
+
+
+def _through_corners(
+    corners_rad: FloatArray, timed: Callable[[FloatArray, FloatArray], FloatArray]
+) -> JointTrajectory:
+    """At rest at each corner (M, 6); `timed` finds the shares of a move, given points along it."""
     parts = []
     for start, goal in pairwise(corners_rad):
         length_rad = float(np.abs(goal - start).max())
@@ -136,9 +162,7 @@ def joint_trajectory(scene: PourScene, corners_rad: FloatArray, limits: SpeedLim
             continue
         shares = np.linspace(0, 1, max(int(length_rad / _PATH_RAD), _FEWEST_POINTS) + 1)
         samples = start + shares[:, None] * (goal - start)
-        tool_points = scene.hand_points(scene.grasp_poses(samples))
-        timed = timed_points(shares, samples, tool_points, limits)
-        parts.append(JointTrajectory.of_samples(start + timed[:, None] * (goal - start)))
+        parts.append(JointTrajectory.of_samples(start + timed(shares, samples)[:, None] * (goal - start)))
     return JointTrajectory.joined(parts) if parts else JointTrajectory.at_rest(corners_rad[0], 0.0)
 
 

@@ -7,7 +7,14 @@ import numpy as np
 from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import JOINT_NAMES, ArmModel
 from core.motion.kinematics import flange_pose
-from hardware.errors import NotInRemoteControl, ProgramStopped, RobotError, TrackingLost, WrongRobot
+from hardware.errors import (
+    NotInRemoteControl,
+    OutputChanged,
+    ProgramStopped,
+    RobotError,
+    TrackingLost,
+    WrongRobot,
+)
 from hardware.modes import unreadiness
 from hardware.robots.ur.dashboard import Dashboard
 from hardware.robots.ur.messages import RUNTIME_PLAYING, robot_mode, safety_mode
@@ -42,22 +49,26 @@ def refuse_other_model(dashboard: Dashboard, arm: ArmModel, name: str) -> None:
 
 
 def refuse_other_kinematics(
-    raw: AnyArray, arm: ArmModel, T_flange_tool: FloatArray, tolerance_m: float, tolerance_rad: float
+    joints_rad: FloatArray,
+    tool_pose: FloatArray,
+    arm: ArmModel,
+    T_flange_tool: FloatArray,
+    tolerances: tuple[float, float],
 ) -> None:
-    """Refuse an arm whose tool is not where the model's kinematics put it at a state of `FIELDS`.
+    """Refuse an arm whose tool, reported at a pose (6,), is not where the model's kinematics put it.
 
     A factory calibration shifts a real arm by some millimetres; UR5 and UR5e differ by 73 mm in their height
     alone.
 
     Raises:
-        WrongRobot: it is farther away than the tolerances.
+        WrongRobot: it is farther away than the tolerances, in metres and radians.
     """
-    expected = flange_pose(arm, raw["joints_rad"]) @ T_flange_tool
-    reported = pose_from_vector(raw["tool_pose"])
+    expected = flange_pose(arm, joints_rad) @ T_flange_tool
+    reported = pose_from_vector(tool_pose)
     apart_m = float(np.linalg.norm(reported[:3, 3] - expected[:3, 3]))
     cosine = (np.trace(expected[:3, :3].T @ reported[:3, :3]) - 1) / 2
     apart_rad = float(np.arccos(np.clip(cosine, -1, 1)))
-    if apart_m > tolerance_m or apart_rad > tolerance_rad:
+    if apart_m > tolerances[0] or apart_rad > tolerances[1]:
         raise WrongRobot(
             f"The arm is not the {arm.name} of the cell file: its controller puts the tool "
             f"{apart_m * 1000:.0f} mm and {np.degrees(apart_rad):.1f} degrees from where a {arm.name} would "
@@ -87,15 +98,29 @@ def deviation(raw: AnyArray) -> RobotError | None:
     return tracking_lost(raw["joints_rad"], raw["target_joints_rad"][None], "where the controller wants it")
 
 
-def tracking_lost(joints_rad: FloatArray, asked_rad: FloatArray, what: str) -> TrackingLost | None:
-    """Say so when joints (6,) are farther than `TRACKING_RAD` from every one of the places (N, 6)."""
+def tracking_lost(
+    joints_rad: FloatArray, asked_rad: FloatArray, what: str, most_rad: float = TRACKING_RAD
+) -> TrackingLost | None:
+    """Say so when joints (6,) are farther than a limit from every one of the places (N, 6)."""
     apart = np.abs(asked_rad - joints_rad)
     nearest = apart[apart.max(axis=1).argmin()]
-    if nearest.max() <= TRACKING_RAD:
+    if nearest.max() <= most_rad:
         return None
     return TrackingLost(
         f"The {JOINT_NAMES[int(nearest.argmax())]} joint was {np.degrees(nearest.max()):.1f} degrees from "
         f"{what} and the arm was stopped; see what holds or pushes it, then recover the robot and plan anew."
+    )
+
+
+def output_changed(before: tuple[bool, bool], now: tuple[bool, bool]) -> OutputChanged | None:
+    """Say so when an output of the tool is not as it was: nobody switches one while the arm moves."""
+    changed = [number for number in (0, 1) if before[number] != now[number]]
+    if not changed:
+        return None
+    return OutputChanged(
+        f"Tool output {changed[0]} went {'on' if now[changed[0]] else 'off'} while the arm moved: the "
+        "gripper may have let go, and the arm was stopped; see to the cup, the cable and the 24 V supply, "
+        "then recover the robot."
     )
 
 

@@ -13,6 +13,7 @@ from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.probe import DASHBOARD_PORT
 
 _ANSWER_S = 2.0
+_ENDS_WITHIN_S = 2.0
 _NOT_KNOWN = "could not understand"
 
 
@@ -34,6 +35,12 @@ class Dashboard:
             self._read_line(_ANSWER_S)  # the greeting
         except OSError as error:
             raise self._lost(error) from error
+
+    def __enter__(self) -> Dashboard:
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self.close()
 
     def close(self) -> None:
         """Disconnect."""
@@ -65,6 +72,26 @@ class Dashboard:
             RobotLost: no answer came in time.
         """
         self.ask("stop", within_s)
+
+    def program(self) -> str | None:
+        """What the program on the controller does and how it is called, such as "PLAYING weld.urp".
+
+        None when there is none under way, or the question is not known.
+        """
+        answer = self.ask("programState").strip()
+        return answer if answer.upper().startswith(("PLAYING", "PAUSED")) else None
+
+    def end_program(self) -> None:
+        """End the program on the controller.
+
+        Raises:
+            RobotNotReady: it goes on.
+        """
+        self.ask("stop")
+        if not _comes_true(lambda: self.program() is None, _ENDS_WITHIN_S):
+            raise RobotNotReady(
+                f"The program on the controller at {self._address} does not end; end it at its panel."
+            )
 
     def is_in_local_control(self) -> bool:
         """Whether only the panel moves the arm; controllers before 5.6 know no such mode."""
@@ -100,6 +127,7 @@ class Dashboard:
 _UNLOCK_WITHIN_S = 8.0
 """The controller unlocks a protective stop 5 s after it, so that somebody looks first."""
 _SWITCH_WITHIN_S = 30.0
+_RESTART_WITHIN_S = 30.0
 _POLL_S = 0.1
 
 
@@ -116,14 +144,14 @@ def make_ready(dashboard: Dashboard, name: str) -> None:
     dashboard.ask("close safety popup")
     _refuse_emergency(_safety(dashboard), name)
     if _safety(dashboard) is SafetyMode.PROTECTIVE_STOP:
-        _unlock(dashboard, name)
+        unlock(dashboard, name)
     if not _safety(dashboard).may_move:
         raise RobotNotReady(
             f"The safety system of the {name} is in '{_safety(dashboard).words}'; clear that at its "
             "panel, then recover the robot again."
         )
     if _mode(dashboard) is not RobotMode.RUNNING:
-        _switch_on(dashboard, name)
+        switch_on(dashboard, name)
 
 
 def _refuse_emergency(safety: SafetyMode, name: str) -> None:
@@ -134,7 +162,13 @@ def _refuse_emergency(safety: SafetyMode, name: str) -> None:
         )
 
 
-def _unlock(dashboard: Dashboard, name: str) -> None:
+def unlock(dashboard: Dashboard, name: str) -> None:
+    """Unlock a protective stop, when its time has come.
+
+    Raises:
+        ProtectiveStop: it stays.
+    """
+
     def is_unlocked() -> bool:
         dashboard.ask("unlock protective stop")
         return _safety(dashboard) is not SafetyMode.PROTECTIVE_STOP
@@ -146,11 +180,32 @@ def _unlock(dashboard: Dashboard, name: str) -> None:
         )
 
 
-def _switch_on(dashboard: Dashboard, name: str) -> None:
+def restart_safety(dashboard: Dashboard, name: str) -> None:
+    """Start the safety system again after a fault or a violation; the arm's power is off then.
+
+    Raises:
+        RobotNotReady: the fault stays.
+    """
+    dashboard.ask("close safety popup")
+    dashboard.ask("restart safety")
+    if not _comes_true(lambda: _safety(dashboard).may_move, _RESTART_WITHIN_S):
+        raise RobotNotReady(
+            f"The safety system of the {name} stays in '{_safety(dashboard).words}'; clear that at its panel."
+        )
+
+
+def switch_on(dashboard: Dashboard, name: str, has_brakes_released: bool = True) -> None:
+    """Switch the arm's power on, and release its brakes unless they shall stay.
+
+    Raises:
+        RobotNotReady: it does not come on.
+    """
     dashboard.ask("power on")
-    has_power = _comes_true(lambda: _mode(dashboard) in (RobotMode.IDLE, RobotMode.RUNNING), _SWITCH_WITHIN_S)
-    dashboard.ask("brake release")
-    if not has_power or not _comes_true(lambda: _mode(dashboard) is RobotMode.RUNNING, _SWITCH_WITHIN_S):
+    is_fine = _comes_true(lambda: _mode(dashboard) in (RobotMode.IDLE, RobotMode.RUNNING), _SWITCH_WITHIN_S)
+    if has_brakes_released:
+        dashboard.ask("brake release")
+        is_fine = is_fine and _comes_true(lambda: _mode(dashboard) is RobotMode.RUNNING, _SWITCH_WITHIN_S)
+    if not is_fine:
         raise RobotNotReady(
             f"The {name} does not switch on: it stays in '{_mode(dashboard).words}'; switch it on at its "
             "panel, then recover the robot again."

@@ -15,7 +15,7 @@ from typing import Any
 from core.child_process import STDERR, STDOUT, ChildProcess
 from core.geometry import AnyArray
 from hardware.errors import RobotError, RobotLost, RobotUnreachable
-from hardware.robots.ur.messages import Connected, Ended, Reply, Request, Setup, Started, StateMailbox
+from hardware.robots.ur.messages import Connected, Ended, Pulse, Reply, Request, Setup, Started, StateMailbox
 
 
 class UrMove:
@@ -82,12 +82,12 @@ _ANSWER_S = 2.0
 _END_S = 1.0
 
 
-def _work(connection: Connection, setup: Setup, mailbox: StateMailbox) -> None:
+def _work(connection: Connection, setup: Setup, mailbox: StateMailbox, pulse: Pulse) -> None:
     """In the new process."""
     # Late, so that the parent never loads ur_rtde.
     from hardware.robots.ur.worker import serve
 
-    serve(connection, setup, mailbox)
+    serve(connection, setup, mailbox, pulse)
 
 
 class WorkerLink:
@@ -112,13 +112,20 @@ class WorkerLink:
         self._address = setup.address
         self._on_ended, self._on_lost = on_ended, on_lost
         self._mailbox = StateMailbox()
+        self._pulse = Pulse()
         self._numbers = count()
         self._replies: dict[int, SimpleQueue[RobotError | None]] = {}
         self._send_lock = Lock()
         self._is_ending = Event()
         # ur_rtde prints its progress to both outputs; a worker without a parent must not go on driving.
         self._process = ChildProcess(
-            _work, setup, self._mailbox, name="ur worker", silenced=(STDOUT, STDERR), grace_s=0.0
+            _work,
+            setup,
+            self._mailbox,
+            self._pulse,
+            name="ur worker",
+            silenced=(STDOUT, STDERR),
+            grace_s=0.0,
         )
         self._connection = self._process.connection
         try:
@@ -138,15 +145,16 @@ class WorkerLink:
         """Return the newest state of `FIELDS`.
 
         Raises:
-            RobotLost: it is too old.
+            RobotLost: it is too old, or the worker's thread that commands the arm is stuck.
         """
-        raw = self._fresh_state()
-        if raw is None:
+        raw = self._mailbox.read()
+        if self._silence(raw):
             # Where the whole machine stood still, the worker gets to run again, too, and sends the newest.
             self._is_ending.wait(_LOOK_S)
-            raw = self._fresh_state()
-        if raw is None:
-            raise self._lost("sends nothing")
+            raw = self._mailbox.read()
+        silence = self._silence(raw)
+        if raw is None or silence:
+            raise self._lost(silence)
         return raw
 
     def ask(self, name: str, *arguments: Any, within_s: float = _ANSWER_S) -> None:
@@ -175,11 +183,12 @@ class WorkerLink:
         self._process.end(_END_S)
         self._thread.join()
 
-    def _fresh_state(self) -> AnyArray | None:
-        raw = self._mailbox.read()
-        if raw is None or self._is_ending.is_set() or time.monotonic() - raw["time_s"] > LOST_S:
-            return None
-        return raw
+    def _silence(self, raw: AnyArray | None) -> str:
+        """What is wrong with the newest state; empty if nothing is."""
+        now_s = time.monotonic()
+        if raw is None or self._is_ending.is_set() or now_s - raw["time_s"] > LOST_S:
+            return "sends nothing"
+        return "takes no commands any more" if now_s > raw["due_s"] else ""
 
     def _send(self, request: Request, within_s: float) -> None:
         if not self._send_lock.acquire(timeout=within_s):
@@ -220,6 +229,7 @@ class WorkerLink:
         """Pass on what the worker sends until it ends; a frozen or dead one is ended and reported."""
         while not self._is_ending.is_set():
             try:
+                self._pulse.beat()
                 wait_for_handles([self._connection, self._process.sentinel], _LOOK_S)
                 while self._connection.poll():
                     self._take(self._connection.recv())

@@ -90,12 +90,31 @@ FIELDS = np.dtype(
         ("runtime_state", "i8"),
         ("output_bits", "i8"),
         ("progress", "f8"),
+        ("due_s", "f8"),
     ]
 )
 """One state; `tool_pose` is metres and a rotation vector, `time_s` is `time.monotonic`, which all processes
-of a machine share, `progress` is the share of the present move."""
+of a machine share, `progress` is the share of the present move, `due_s` the `time.monotonic` by which the
+thread that makes the control calls should have been heard again."""
 
 _COUNT_BYTES = 8
+
+
+class Pulse:
+    """A counter that the driver keeps counting, so that its worker knows whether the program still runs."""
+
+    def __init__(self) -> None:
+        """Begin at 0, in memory that a spawned process shares when it is handed over."""
+        self._memory = SPAWN.RawArray("q", 1)
+
+    def beat(self) -> None:
+        """Count one on."""
+        self._memory[0] += 1
+
+    @property
+    def count(self) -> int:
+        """How often it beat."""
+        return int(self._memory[0])
 
 
 class StateMailbox:
@@ -132,25 +151,38 @@ class StateMailbox:
         return count, np.frombuffer(memory, FIELDS, offset=_COUNT_BYTES)
 
 
-def robot_mode(raw: AnyArray) -> RobotMode:
+def known_robot_mode(number: int) -> RobotMode:
     """How far the arm is switched on; a number that nobody knows is not ready."""
-    number = int(raw["robot_mode"])
     return RobotMode(number) if number in set(RobotMode) else RobotMode.NO_CONTROLLER
 
 
-def safety_mode(raw: AnyArray) -> SafetyMode:
+def known_safety_mode(number: int) -> SafetyMode:
     """Whether the safety system lets the arm move; a number that nobody knows does not."""
-    number = int(raw["safety_mode"])
     return SafetyMode(number) if number in set(SafetyMode) else SafetyMode.UNDEFINED
+
+
+def robot_mode(raw: AnyArray) -> RobotMode:
+    """How far the arm is switched on, by a state of `FIELDS`."""
+    return known_robot_mode(int(raw["robot_mode"]))
+
+
+def safety_mode(raw: AnyArray) -> SafetyMode:
+    """Whether the safety system lets the arm move, by a state of `FIELDS`."""
+    return known_safety_mode(int(raw["safety_mode"]))
 
 
 _TOOL_OUTPUT_BIT = 16
 """Of the digital outputs 0-7 are the cabinet's, 8-15 configurable, 16 and 17 the tool's."""
 
 
+def tool_outputs(raw: AnyArray) -> tuple[bool, bool]:
+    """The two digital outputs of the tool."""
+    bits = int(raw["output_bits"]) >> _TOOL_OUTPUT_BIT
+    return bool(bits & 1), bool(bits & 2)
+
+
 def robot_state(raw: AnyArray, arm: ArmModel) -> RobotState:
     """Return a state of `FIELDS` as the interface defines it."""
-    bits = int(raw["output_bits"]) >> _TOOL_OUTPUT_BIT
     return RobotState(
         joints_rad=raw["joints_rad"],
         target_joints_rad=raw["target_joints_rad"],
@@ -160,7 +192,7 @@ def robot_state(raw: AnyArray, arm: ArmModel) -> RobotState:
         robot_mode=robot_mode(raw),
         safety_mode=safety_mode(raw),
         is_program_running=int(raw["runtime_state"]) == RUNTIME_PLAYING,
-        tool_outputs=(bool(bits & 1), bool(bits & 2)),
+        tool_outputs=tool_outputs(raw),
         speed_scaling=float(np.clip(raw["speed_scaling"], 0.0, 1.0)),
         controller_s=float(raw["controller_s"]),
         time_s=float(raw["time_s"]),

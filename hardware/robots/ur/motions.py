@@ -26,7 +26,13 @@ _MOST_CYCLES = 2
 """The trajectory's clock never advances more at a time: after a hiccup the arm goes on and does not hurry."""
 _LAG_S = 0.5
 """How far behind its targets the arm may be during a motion: servoj's smoothing and the link's latency."""
-_LAG_SAMPLES = 26
+_LAG_SAMPLES = 101
+_PATH_RAD = 0.02
+"""A lagging arm is late on its path, not beside it; so little is 17 mm at full reach."""
+_STANDS_S = 0.1
+_STANDING_RAD_S, _MOVING_RAD_S = 0.01, 0.05
+_SLOWED = 0.3
+"""With the speed slider lower than this a standing arm says nothing."""
 _SETTLE_S = 1.0
 _SETTLED_RAD_S2 = 2.0
 _LAST_BIT_RAD = 0.02
@@ -90,11 +96,14 @@ class JointMoves:
             (end, length) for end, length in zip(path_rad[1:], lengths, strict=True) if length > ARRIVED_RAD
         ]
         self._is_under_way = False
+        self._from_rad = np.array(path_rad[0])
         self._resting_since_s: float | None = None
 
     def step(self, raw: AnyArray) -> bool:
         """Begin the next move when the arm is at a corner; see `Motion`."""
         raise_if(deviation(raw))
+        if self._left and self._is_under_way:
+            raise_if(tracking_lost(raw["joints_rad"], self._segment(raw), "its path"))
         if self._left and self._is_under_way and self._has_arrived(raw):
             self._left.pop(0)
             self._is_under_way = False
@@ -111,8 +120,15 @@ class JointMoves:
         self._left.clear()
         self._control.stopJ(deceleration_rad_s2, True)
 
+    def _segment(self, raw: AnyArray) -> FloatArray:
+        """The point (1, 6) of the present straight move that is nearest to where the joints are."""
+        way_rad = self._left[0][0] - self._from_rad
+        share = float(np.clip(way_rad @ (raw["joints_rad"] - self._from_rad) / (way_rad @ way_rad), 0, 1))
+        return np.array([self._from_rad + share * way_rad])
+
     def _begin(self, raw: AnyArray) -> None:
         self._is_under_way = True
+        self._from_rad = np.array(raw["joints_rad"])
         self._resting_since_s = float(raw["time_s"])
         if not self._control.moveJ(self._left[0][0].tolist(), self._speed, self._acceleration, True):
             raise MoveRefused("The controller did not take the move; recover the robot and plan anew.")
@@ -147,6 +163,7 @@ class Following:
         self._clock_s = 0.0
         self._last_s: float | None = None
         self._settles_since_s: float | None = None
+        self._stands_since_s: float | None = None
         self._last_bit: JointMoves | None = None
 
     def step(self, raw: AnyArray) -> bool:
@@ -159,11 +176,14 @@ class Following:
         self._last_s = now_s
         self._clock_s += min(max(passed_s, 0.0), _MOST_CYCLES * self._cycle_s) * float(raw["speed_scaling"])
         self.progress = min(self._clock_s / self._trajectory.duration_s, 1.0)
-        raise_if(tracking_lost(raw["joints_rad"], self._expected(), "its path"))
+        expected_rad = self._expected()
+        raise_if(tracking_lost(raw["joints_rad"], expected_rad, "its path", _PATH_RAD))
+        self._refuse_standing(raw, expected_rad)
         if self._clock_s >= self._trajectory.duration_s:
             if self._settles_since_s is None:
+                # Ended one step later at the earliest: `progress` tells before that the end takes its time.
                 self._settles_since_s = float(raw["time_s"])
-            if self._is_settled(raw) or raw["time_s"] - self._settles_since_s > _SETTLE_S:
+            elif self._is_settled(raw) or raw["time_s"] - self._settles_since_s > _SETTLE_S:
                 return self._finish(raw)
         target = self._trajectory.at(self._clock_s).tolist()
         if not self._control.servoJ(target, 0.0, 0.0, self._cycle_s, _LOOKAHEAD_S, _GAIN):
@@ -183,6 +203,25 @@ class Following:
         return np.column_stack(
             [np.interp(times_s, self._trajectory.times_s, column) for column in self._trajectory.joints_rad.T]
         )
+
+    def _refuse_standing(self, raw: AnyArray, expected_rad: FloatArray) -> None:
+        """Refuse an arm at rest while all of the last part of its path moves: no lag explains that.
+
+        Raises:
+            TrackingLost: it has been so for some time; perhaps another program has the arm.
+        """
+        steps_rad = np.abs(np.diff(expected_rad, axis=0)).max(axis=1)
+        slowest_rad_s = float(steps_rad.min()) * (_LAG_SAMPLES - 1) / _LAG_S
+        is_at_rest = np.abs(raw["joint_speeds_rad_s"]).max() < _STANDING_RAD_S
+        if not is_at_rest or slowest_rad_s < _MOVING_RAD_S or raw["speed_scaling"] < _SLOWED:
+            self._stands_since_s = None
+        elif self._stands_since_s is None:
+            self._stands_since_s = float(raw["time_s"])
+        elif raw["time_s"] - self._stands_since_s > _STANDS_S:
+            raise TrackingLost(
+                "The arm stands while its path goes on, as if another program had taken it over; see what "
+                "runs on the controller and what holds the arm, then recover the robot and plan anew."
+            )
 
     def _is_settled(self, raw: AnyArray) -> bool:
         is_still = np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S

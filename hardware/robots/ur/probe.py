@@ -30,26 +30,31 @@ def probe(address: str) -> None:
     for port, purpose in _PURPOSES.items():
         try:
             with socket.create_connection((address, port), _left_s(deadline_s)) as connection:
-                is_controller = _answers_as_controller(connection, port, deadline_s)
+                is_controller, received = _answers_as_controller(connection, port, deadline_s)
         except (OSError, UnicodeError) as error:  # a name that is none fails in its encoding
             raise RobotUnreachable(
                 f"Nobody answers at {address} on its {purpose} port {port} ({error}); switch the controller "
                 "on, check the address in the cell file and the network cable."
             ) from error
         if not is_controller:
+            says = "is no UR controller" if received else "sends nothing, as no UR controller does"
             raise RobotUnreachable(
-                f"What answers at {address} on port {port} is no UR controller; correct the address in the "
-                "cell file."
+                f"What answers at {address} on port {port} {says}; correct the address in the cell "
+                "file, or if it is right restart the controller."
             )
 
 
-def _answers_as_controller(connection: socket.socket, port: int, deadline_s: float) -> bool:
+def _answers_as_controller(connection: socket.socket, port: int, deadline_s: float) -> tuple[bool, bytes]:
+    """Whether it does, and what it said."""
+    received = b""
     if port == DASHBOARD_PORT:
-        return UR_GREETING.encode() in _receive(connection, len(UR_GREETING), deadline_s)
+        received = _receive(connection, len(UR_GREETING), deadline_s)
+        return UR_GREETING.encode() in received, received
     if port == DATA_PORT:
         connection.sendall(_ASK_PROTOCOL_2)
-        return _receive(connection, len(_ACCEPTS_PROTOCOL_2), deadline_s) == _ACCEPTS_PROTOCOL_2
-    return True
+        received = _receive(connection, len(_ACCEPTS_PROTOCOL_2), deadline_s)
+        return received == _ACCEPTS_PROTOCOL_2, received
+    return True, received
 
 
 def _receive(connection: socket.socket, at_least: int, deadline_s: float) -> bytes:

@@ -25,7 +25,8 @@ from hardware.errors import (
     RobotLost,
     RobotStopped,
 )
-from hardware.interfaces import RobotState
+from hardware.interfaces import ReadyStep, RobotState
+from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
 from hardware.robots.ur.checks import (
     raise_if,
@@ -35,11 +36,21 @@ from hardware.robots.ur.checks import (
     unsafe,
 )
 from hardware.robots.ur.dashboard import Dashboard, make_ready
+from hardware.robots.ur.glance import Glance, glance
 from hardware.robots.ur.link import UrMove, WorkerLink
 from hardware.robots.ur.messages import RUNTIME_PLAYING, Ended, Setup, robot_state
 from hardware.robots.ur.motions import ARRIVED_RAD
 from hardware.robots.ur.pose_vectors import vector_from_pose
 from hardware.robots.ur.probe import probe, set_tool_voltage
+from hardware.robots.ur.readying import (
+    Tool,
+    must_set_voltage,
+    next_step,
+    refuse_foreign_program,
+    refuse_other_arm,
+    refuse_taken,
+    take_step,
+)
 
 STOP_ANSWER_S = 0.1
 """A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
@@ -48,6 +59,7 @@ _RESTS_WITHIN_S = 0.3
 _RESTING_RAD_S = 0.01
 _DASHBOARD_STOP_S = 0.3
 _OUTPUT_WITHIN_S = 0.5
+_RELEASED_WITHIN_S = 0.5
 _POLL_S = 0.004
 
 _log = logging.getLogger(__name__)
@@ -98,8 +110,7 @@ class UR5Robot:
         self.controller_version: tuple[int, ...] = ()
         self._arm = arm
         self._T_flange_tool = T_flange_tool
-        self._tool_voltage_v = tool_voltage_v
-        self._tolerances = tolerance_m, tolerance_rad
+        self._tool = Tool(tool_voltage_v, (tolerance_m, tolerance_rad))
         self._address = address
         self._payload = float(payload_kg), [float(x) for x in payload_center_m]
         self._connection: _Connection | None = None
@@ -187,6 +198,33 @@ class UR5Robot:
         if self._move is not None:
             self._move.end(stopped)
 
+    def look(self) -> Glance:
+        """Look without writing anything to the controller, and check that it is the arm of the cell file.
+
+        Raises:
+            RobotError: it is not there, another one, or in local control.
+        """
+        probe(self._address)
+        with Dashboard(self._address) as dashboard:
+            seen = self._look(dashboard)
+            self.controller_version = dashboard.version()
+        return seen
+
+    def pending_step(self) -> tuple[ReadyStep, str] | None:
+        """What has to be done before it can be connected, and why; none if that is nothing or not known."""
+        with suppress(RobotError), Dashboard(self._address) as dashboard:
+            return next_step(dashboard, self._look(dashboard), self.name)
+        return None
+
+    def take_step(self, step: ReadyStep) -> None:
+        """Do that; the arm follows no path.
+
+        Raises:
+            RobotError: it could not be done; the sentence says what a person has to do.
+        """
+        with Dashboard(self._address) as dashboard:
+            take_step(dashboard, step, self.name)
+
     def recover(self) -> None:
         """Bring the robot back to where it takes moves, with a new worker; nothing goes on.
 
@@ -201,12 +239,10 @@ class UR5Robot:
             # worker's last message may come until it is gone.
             self._refusal = None
             probe(self._address)
-            dashboard = Dashboard(self._address)
-            try:
+            with Dashboard(self._address) as dashboard:
                 refuse_local_control(dashboard, self.name)
+                refuse_foreign_program(dashboard, self.name)
                 make_ready(dashboard, self.name)
-            finally:
-                dashboard.close()
             self._connect()
 
     def set_tool_output(self, output: int, value: bool) -> None:
@@ -236,10 +272,16 @@ class UR5Robot:
         probe(self._address)
         dashboard = Dashboard(self._address)
         try:
-            refuse_local_control(dashboard, self.name)
-            refuse_other_model(dashboard, self._arm, self.name)
-            if self._tool_voltage_v is not None:
-                set_tool_voltage(self._address, self._tool_voltage_v)
+            seen = self._look(dashboard)
+            if not seen.has_free_inputs:
+                # those of the worker before are given back when the controller hears that it has gone
+                time.sleep(_RELEASED_WITHIN_S)
+                seen = self._look(dashboard)
+            raise_if(unreadiness(seen.safety_mode, seen.robot_mode))
+            refuse_taken(dashboard, seen, self.name)
+            if must_set_voltage(seen, self._tool, self.name):  # until here nothing was written
+                assert self._tool.voltage_v is not None, "there is one to set"
+                set_tool_voltage(self._address, self._tool.voltage_v)
             self.controller_version = dashboard.version()
             cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
             setup = Setup(
@@ -247,7 +289,11 @@ class UR5Robot:
             )
             worker = WorkerLink(setup, self._on_ended, self._on_lost)
             try:
-                refuse_other_kinematics(worker.state(), self._arm, self._T_flange_tool, *self._tolerances)
+                raw = worker.state()
+                tool_pose, T_tool = raw["tool_pose"], self._T_flange_tool
+                refuse_other_kinematics(
+                    raw["joints_rad"], tool_pose, self._arm, T_tool, self._tool.tolerances
+                )
             except BaseException:
                 worker.end()
                 raise
@@ -256,6 +302,13 @@ class UR5Robot:
             raise
         self._move = None
         self._connection = _Connection(dashboard, worker)
+
+    def _look(self, dashboard: Dashboard) -> Glance:
+        refuse_local_control(dashboard, self.name)
+        refuse_other_model(dashboard, self._arm, self.name)
+        seen = glance(self._address)
+        refuse_other_arm(seen, self._arm, self._tool)
+        return seen
 
     def _disconnect(self) -> None:
         connection, self._connection = self._connection, None

@@ -32,19 +32,22 @@ from hardware.errors import (
     RobotNotReady,
     RobotStopped,
     RobotUnreachable,
+    TrackingLost,
 )
 from hardware.realtime import take_precedence
-from hardware.robots.ur.checks import deviation, raise_if, unsafe
+from hardware.robots.ur.checks import deviation, output_changed, raise_if, unsafe
 from hardware.robots.ur.messages import (
     FIELDS,
     RUNTIME_PLAYING,
     Connected,
     Ended,
+    Pulse,
     Reply,
     Request,
     Setup,
     Started,
     StateMailbox,
+    tool_outputs,
 )
 from hardware.robots.ur.motions import Following, JointMoves, Motion
 
@@ -60,16 +63,23 @@ _REASON_S = 0.06
 """The safety system's word may come some cycles after the program has ended because of it."""
 _TAKEN_S = 1.0
 _SAME = 1e-4
+_HEARD_S = 0.2
+"""The thread that makes the control calls loops within milliseconds; after this time it is stuck, ..."""
+_HANDSHAKE_S = 2.0
+"""... but for calls that wait for the controller's answers, over a slow link, or for the arm's rest."""
+_PROGRAM_SILENT_S = 0.5
+_LOOP_S = 0.05
+"""Of a pause in this thread's own work no more counts: this process did not run, either."""
 
 
-def serve(connection: Connection, setup: Setup, mailbox: StateMailbox) -> NoReturn:
+def serve(connection: Connection, setup: Setup, mailbox: StateMailbox, pulse: Pulse) -> NoReturn:
     """Connect, report it to the parent, and do what it requests until it requests the end or is gone."""
     # A constructor that hangs keeps Python from running at all; this signal ends the process all the same.
     signal.alarm(_HANGS_S)
     take_precedence()
     connection.send(Started())
     try:
-        worker = _Worker(setup, connection, mailbox)
+        worker = _Worker(setup, connection, mailbox, pulse)
     except RobotError as error:
         connection.send(Connected(error))
         os._exit(1)
@@ -84,12 +94,17 @@ def serve(connection: Connection, setup: Setup, mailbox: StateMailbox) -> NoRetu
 class _Worker:
     """One thread reads states, the other one, in `run`, makes all control calls."""
 
-    def __init__(self, setup: Setup, connection: Connection, mailbox: StateMailbox) -> None:
+    def __init__(self, setup: Setup, connection: Connection, mailbox: StateMailbox, pulse: Pulse) -> None:
         self._connection = connection
         self._mailbox = mailbox
         self._cycle_s = setup.cycle_s
         self._motion: Motion | None = None
+        self._outputs = (False, False)
         self._is_over = False
+        self._refusal = "The arm was stopped; recover the robot first."
+        self._pulse, self._heard = pulse, 0
+        self._looked_s, self._silent_s = time.monotonic(), 0.0
+        self._due_s = float("inf")
         self._fresh = Event()
         self._kicked_s = 0.0
         try:
@@ -106,13 +121,37 @@ class _Worker:
         """Serve requests and move, until the parent is gone."""
         Thread(target=self._publish, daemon=True).start()
         while True:
+            self._due_s = time.monotonic() + _HEARD_S
             is_fresh = self._fresh.wait(_IDLE_S)
             self._fresh.clear()
+            self._listen_for_program()
             while self._connection.poll():
-                self._serve(self._connection.recv())
+                request = self._connection.recv()
+                self._due_s = time.monotonic() + _HANDSHAKE_S
+                self._serve(request)
+                self._due_s = time.monotonic() + _HEARD_S
             if is_fresh and self._motion is not None:
                 self._step(self._motion)
             self._kick()
+
+    def _listen_for_program(self) -> None:
+        """A program that stood still does not go on: somebody has to look at the arm first."""
+        now_s, heard = time.monotonic(), self._pulse.count
+        self._silent_s += min(now_s - self._looked_s, _LOOP_S)
+        if heard != self._heard:
+            self._silent_s = 0.0
+        self._looked_s, self._heard = now_s, heard
+        if self._silent_s < _PROGRAM_SILENT_S or self._is_over or not heard:
+            return
+        self._is_over = True
+        self._refusal = (
+            f"This program stood still for {_PROGRAM_SILENT_S:g} s or longer, so the arm was stopped; see "
+            "that all is well, then recover the robot and plan anew."
+        )
+        motion, self._motion = self._motion, None
+        if motion is not None:
+            self._brake(motion)
+            self._connection.send(Ended(RobotStopped(self._refusal), motion.progress))
 
     def _set_up(self, setup: Setup) -> None:
         """Set tool and payload, and read them back: what the controller takes for granted must be ours."""
@@ -158,9 +197,10 @@ class _Worker:
 
     def _begin(self, motion: Motion) -> None:
         if self._is_over:
-            raise MoveRefused("The arm was stopped; recover the robot first.")
+            raise MoveRefused(self._refusal)
         if self._motion is not None:
             raise MoveRefused("The arm is still moving; stop it or wait until it stops.")
+        self._outputs = tool_outputs(self._latest)
         self._motion = motion
 
     def _stop(self, request: Request) -> None:
@@ -179,7 +219,10 @@ class _Worker:
     def _step(self, motion: Motion) -> None:
         """Go on with the motion; whatever is wrong with it ends it."""
         error: RobotError | None = None
+        if not motion.is_streaming or motion.progress >= 1:
+            self._due_s = time.monotonic() + _HANDSHAKE_S
         try:
+            raise_if(output_changed(self._outputs, tool_outputs(self._latest)))
             is_done = motion.step(self._latest)
             if motion.is_streaming:
                 self._kicked_s = time.monotonic()
@@ -192,11 +235,16 @@ class _Worker:
         self._motion = None
         if error is not None:
             self._is_over = True
-            self._brake(motion)
-            error = self._reason(error)
+            if isinstance(error, TrackingLost):
+                # It may be that another program has the arm, which would not hear us: the parent ends it.
+                error = unsafe(self._latest) or error
+            else:
+                self._brake(motion)
+                error = self._reason(error)
         self._connection.send(Ended(error, motion.progress))
 
     def _brake(self, motion: Motion) -> None:
+        self._due_s = time.monotonic() + _HANDSHAKE_S
         fastest_rad_s = float(np.abs(self._latest["joint_speeds_rad_s"]).max())
         # The parent sees an arm that does not come to rest, and ends the program through the dashboard.
         with suppress(RuntimeError):
@@ -232,6 +280,7 @@ class _Worker:
                 continue
             raw = self._read()
             raw["progress"] = 0.0 if self._motion is None else self._motion.progress
+            raw["due_s"] = self._due_s
             self._latest = raw
             self._mailbox.write(raw)
             self._fresh.set()

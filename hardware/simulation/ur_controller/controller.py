@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from enum import IntEnum
 
 import numpy.typing as npt
@@ -9,6 +10,7 @@ import numpy.typing as npt
 from core.motion.arm_models import ArmModel
 from hardware.modes import RobotMode, SafetyMode
 from hardware.simulation.ur_controller.arm import STOP_RAD_S2, Arm
+from hardware.simulation.ur_controller.foreign import ForeignProgram
 from hardware.simulation.ur_controller.identity import Identity
 from hardware.simulation.ur_controller.journal import Journal
 from hardware.simulation.ur_controller.motions import NoSolution
@@ -19,6 +21,9 @@ CONTROL_SCRIPT_MARK = "def rtde_control():"
 _SWITCHING_S = 1.0
 """Powering on and releasing the brakes; the real ones take longer, but nobody gains by waiting."""
 _UNLOCK_AFTER_S = 5.0
+_GAP_S = 0.1
+TOOL_OUTPUT_BIT = 16
+"""Of the digital outputs 16 and 17 are the tool's."""
 
 
 class RuntimeState(IntEnum):
@@ -45,6 +50,8 @@ class Controller:
         robot_mode, safety_mode, runtime_state: as RTDE reports them.
         is_remote: whether it is in remote control (e-Series; always so on a CB3).
         ignores_uploads: a fault: scripts come and nothing happens.
+        tool_voltage_v: supply of the tool connector.
+        ignores_outputs: a fault: outputs are written and nothing happens.
         digital_outputs: bits; 16 and 17 are the tool's.
     """
 
@@ -61,9 +68,13 @@ class Controller:
         self.runtime_state = RuntimeState.STOPPED
         self.is_remote = True
         self.ignores_uploads = False
+        self.tool_voltage_v = 24
+        self.ignores_outputs = False
         self.digital_outputs = 0
         self._cycles = 0
-        self._program: ControlProgram | None = None
+        self._program: ControlProgram | ForeignProgram | None = None
+        self._stopped_until_s = 0.0
+        self._is_hung = False
         self._stopped_at_s = 0.0
         self._switching: list[tuple[float, RobotMode]] = []
 
@@ -73,7 +84,9 @@ class Controller:
         self.time_s = self._cycles * self.dt_s
         self.journal.set_time(self.time_s)
         try:
-            if self._program is not None and self.runtime_state is RuntimeState.PLAYING:
+            if self._is_hung:
+                self.registers.ints[0] = 0
+            elif self._program is not None and self.runtime_state is RuntimeState.PLAYING:
                 self._program.step()
             self.arm.step(self.dt_s)
         except NoSolution as error:
@@ -89,7 +102,11 @@ class Controller:
         is_control = CONTROL_SCRIPT_MARK in script
         taken = self._takes_scripts()
         self.journal.note("script", size=len(script), is_control_script=is_control, is_taken=taken)
-        if not taken or script.lstrip().startswith("sec "):
+        if not taken:
+            return
+        if script.lstrip().startswith("sec "):
+            voltage = re.search(r"set_tool_voltage\((\d+)\)", script)
+            self.tool_voltage_v = int(voltage[1]) if voltage else self.tool_voltage_v
             return
         self._end_program()
         if is_control:
@@ -98,6 +115,19 @@ class Controller:
             )
             self.arm.is_held = False
             self.runtime_state = RuntimeState.PLAYING
+
+    def run_foreign(self, is_moving: bool, has_gap: bool) -> None:
+        """Let another program take over, with or without a moment in which none runs."""
+        self._end_program()
+        self.journal.note("foreign program", is_moving=is_moving)
+        self._program = ForeignProgram(self.arm, is_moving)
+        self._stopped_until_s = self.time_s + (_GAP_S if has_gap else 0.0)
+        self.runtime_state = RuntimeState.STOPPED if has_gap else RuntimeState.PLAYING
+
+    def hang_program(self) -> None:
+        """Let the program take no further command, while it counts as running."""
+        self._is_hung = True
+        self.journal.note("program hangs")
 
     def stop(self) -> bool:
         """End the program; False if there is none."""
@@ -183,6 +213,11 @@ class Controller:
             begin_s = max([self.time_s, *(due_s for due_s, _ in self._switching)])
             self._switching.append((begin_s + _SWITCHING_S, RobotMode.RUNNING))
 
+    def lose_outputs(self) -> None:
+        """Switch the tool's outputs off, as a short circuit or a broken cable does."""
+        self.digital_outputs &= ~(0b11 << TOOL_OUTPUT_BIT)
+        self.journal.note("outputs lost")
+
     def set_model(self, model: ArmModel) -> None:
         """Be another arm from now on: a fault of the cell, found by its kinematics."""
         self.arm.model = model
@@ -194,14 +229,17 @@ class Controller:
     def _end_program(self) -> None:
         if self._program is None:
             return
-        self._program = None
+        self._program, self._is_hung = None, False
         self.journal.note("end of program")
         self.arm.is_held = False
         self.arm.brake(STOP_RAD_S2)
         self.runtime_state = RuntimeState.STOPPING
 
     def _advance_runtime(self) -> None:
-        if self.runtime_state is RuntimeState.STOPPING and not self.arm.is_moving:
+        if self.runtime_state is RuntimeState.STOPPED and self._program is not None:
+            if self.time_s >= self._stopped_until_s:
+                self.runtime_state = RuntimeState.PLAYING
+        elif self.runtime_state is RuntimeState.STOPPING and not self.arm.is_moving:
             self.runtime_state = RuntimeState.STOPPED
         elif self.runtime_state is RuntimeState.PAUSING and self.arm.is_paused:
             self.runtime_state = RuntimeState.PAUSED

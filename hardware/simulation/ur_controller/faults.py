@@ -10,6 +10,10 @@
 | `ignore uploads`, `heed uploads` | scripts come and nothing happens |
 | `take registers`, `release registers` | another client has every input |
 | `stick JOINT...`, `unstick` | joints (1 to 6) do not follow; they do again |
+| `program hangs` | it runs on but takes no further command |
+| `foreign still`, `foreign moving` | another program takes over without a gap; it stands, or turns the base |
+| `foreign gap still`, `foreign gap moving` | the same after a moment in which no program runs |
+| `output lost`, `ignore outputs`, `heed outputs` | the tool's outputs go off; writes do nothing; do again |
 | `slider SHARE`, `model NAME` | the speed slider; another arm's kinematics |
 | `link drop [SECONDS]` | every connection is closed; new ones are refused that long |
 | `link silent [SECONDS]` | everything stays open, nothing passes; for ever without a time |
@@ -69,6 +73,14 @@ class FaultInjector:
             "remote": lambda: setattr(c, "is_remote", True),
             "ignore uploads": lambda: setattr(c, "ignores_uploads", True),
             "heed uploads": lambda: setattr(c, "ignores_uploads", False),
+            "program hangs": c.hang_program,
+            "foreign still": lambda: c.run_foreign(is_moving=False, has_gap=False),
+            "foreign moving": lambda: c.run_foreign(is_moving=True, has_gap=False),
+            "foreign gap still": lambda: c.run_foreign(is_moving=False, has_gap=True),
+            "foreign gap moving": lambda: c.run_foreign(is_moving=True, has_gap=True),
+            "output lost": c.lose_outputs,
+            "ignore outputs": lambda: setattr(c, "ignores_outputs", True),
+            "heed outputs": lambda: setattr(c, "ignores_outputs", False),
             "take registers": lambda: c.registers.take_all(_OTHER_CLIENT),
             "release registers": lambda: c.registers.release(_OTHER_CLIENT),
             "unstick": c.arm.stuck.clear,
@@ -123,6 +135,7 @@ class FaultInjector:
             "is_remote": c.is_remote,
             "slider": c.arm.slider,
             "digital_outputs": c.digital_outputs,
+            "tool_voltage_v": c.tool_voltage_v,
             "tool_outputs": [bool(c.digital_outputs >> 16 & 1), bool(c.digital_outputs >> 17 & 1)],
             "payload_kg": c.arm.payload_kg,
             "connections": sorted(link.name for link in self._network.links),

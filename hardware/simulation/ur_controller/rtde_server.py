@@ -6,12 +6,10 @@ import struct
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import numpy as np
-
 from core.geometry import FloatArray
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.pose_vectors import vector_from_pose
-from hardware.simulation.ur_controller.controller import Controller, RuntimeState
+from hardware.simulation.ur_controller.controller import TOOL_OUTPUT_BIT, Controller, RuntimeState
 from hardware.simulation.ur_controller.link import Link, Network
 from hardware.simulation.ur_controller.rtde_protocol import (
     IN_USE,
@@ -50,7 +48,7 @@ class Outputs:
         """Watch a controller."""
         self._controller = controller
         self._values: dict[str, Values] = {name: _zeros(kind) for name, kind in OUTPUT_TYPES.items()}
-        self._posed: tuple[FloatArray, ...] = (np.empty(0), np.empty(0), np.empty(0))
+        self._posed: tuple[object, ...] = (None,) * 4
 
     def refresh(self, names: Iterable[str]) -> dict[str, Values]:
         """Return the values of now; those that take time only if they are among the names."""
@@ -75,6 +73,7 @@ class Outputs:
         values["speed_scaling"] = (1.0,)
         values["target_speed_fraction"] = (c.arm.slider,)
         values["actual_digital_output_bits"] = (c.digital_outputs,)
+        values["tool_output_voltage"] = (c.tool_voltage_v,)
         values["payload"] = (c.arm.payload_kg,)
         values["payload_cog"] = c.arm.payload_center_m
         values["joint_mode"] = (_JOINT_RUNNING if is_powered else _JOINT_POWER_OFF,) * 6
@@ -96,7 +95,7 @@ class Outputs:
     def _refresh_poses(self) -> None:
         """The arm's kinematics take most of a cycle's time: they are left out while nothing has moved."""
         arm, values = self._controller.arm, self._values
-        posed = (arm.joints_rad, arm.target_rad, arm.T_flange_tcp)
+        posed = (arm.joints_rad, arm.target_rad, arm.T_flange_tcp, arm.model)
         is_same = all(new is old for new, old in zip(posed, self._posed, strict=True))
         is_still = not arm.speeds_rad_s.any() and not arm.target_speeds_rad_s.any()
         if is_same and is_still and values["actual_TCP_speed"] == (0.0,) * 6:
@@ -128,11 +127,11 @@ def _numbers(array: FloatArray) -> Values:
 
 _PROTOCOL = 2
 _MAX_RECIPES = 255
-_TOOL_SHIFT, _CONFIGURABLE_SHIFT = 16, 8
+_CONFIGURABLE_SHIFT = 8
 _DIGITAL_OUTPUTS = {
     "standard_digital_output": 0,
     "configurable_digital_output": _CONFIGURABLE_SHIFT,
-    "tool_digital_output": _TOOL_SHIFT,
+    "tool_digital_output": TOOL_OUTPUT_BIT,
 }
 """Where the bits of each group of outputs begin."""
 
@@ -255,6 +254,8 @@ class RtdeLink(Link):
         if values.get("speed_slider_mask"):
             controller.arm.slider = min(max(float(values["speed_slider_fraction"]), 0.0), 1.0)
             self._journal.note("slider", fraction=controller.arm.slider)
+        if controller.ignores_outputs:
+            return
         for group, shift in _DIGITAL_OUTPUTS.items():
             mask = int(values.get(f"{group}_mask", 0))
             if mask:

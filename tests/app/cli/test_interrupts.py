@@ -33,10 +33,12 @@ def test_each_request_is_heard_and_none_afterwards():
         if len(heard) == 2:
             twice.set()
 
-    with Interrupts(hear):
+    with Interrupts(hear) as interrupts:
         send(signal.SIGINT)
+        assert not interrupts.was_terminated
         send(signal.SIGTERM)
         assert twice.wait(HANG_S)
+        assert interrupts.was_terminated
     assert signal.getsignal(signal.SIGINT) is before
     with pytest.raises(KeyboardInterrupt):
         send(signal.SIGINT)

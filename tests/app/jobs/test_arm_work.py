@@ -8,7 +8,14 @@ import time
 import numpy as np
 import pytest
 
-from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus, MoveProgress, StopDone
+from app.jobs.arm_events import (
+    ArmConnected,
+    ArmDisconnected,
+    ArmStatus,
+    MoveProgress,
+    StepPending,
+    StopDone,
+)
 from app.jobs.arm_work import ArmWork
 from app.jobs.messages import FailureKind
 from app.library.session_folder import remembered_parameters
@@ -20,7 +27,9 @@ from core.session import Session
 from core.session.operator_choice import write_operator_choice
 from core.session.pour_runs import pour_runs
 from hardware.cell import read_cell
+from hardware.interfaces import ReadyStep
 from hardware.simulation.ur_controller.identity import CONTROL_PORT
+from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.jobs.hosts import ListenedHost
 from tests.patience import wait_until
 
@@ -249,3 +258,20 @@ def test_a_lost_link_is_reported_and_connecting_again_works(arm, task, cell):
     assert not arm.status().problem
     assert arm.do(ArmWork.disconnect) is None
     assert arm.of(ArmDisconnected)[-1] == ArmDisconnected()
+
+
+def test_what_is_in_the_way_of_connecting_is_named_and_done_step_by_step(arm, cell):
+    home_rad = cell.robot.home_rad
+    with ControllerProcess(joints_rad=home_rad, speed_up=4.0, faults=["power off"]) as controller:
+        real = cell.robot.model_copy(update={"kind": "ur5", "address": controller.address})
+        rehearsal = cell.model_copy(update={"robot": real, "is_rehearsal": True})
+        step = None
+        for expected in (ReadyStep.POWER_ON, ReadyStep.RELEASE_BRAKES):
+            failed = arm.do(ArmWork.connect, rehearsal, step)
+            assert failed.kind is FailureKind.EXPLAINED
+            pending = arm.of(StepPending)[-1]
+            assert pending.step is expected
+            step = pending.step
+        assert arm.do(ArmWork.connect, rehearsal, step) is None
+        assert arm.status().problem == ""
+        arm.do(ArmWork.disconnect)

@@ -10,7 +10,7 @@ import pytest
 
 from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus, StopDone
 from app.jobs.messages import Event, Failed, FailureKind, Finished, Progressed, Warned
-from app.jobs.scan_events import MeshGrown, ViewDone, ViewsPlanned
+from app.jobs.scan_events import MeshGrown, ScanQuestion, ViewDone, ViewsPlanned
 from app.jobs.scan_work import ScanWork
 from app.library.session_folder import UNFINISHED_SCAN
 from app.operations.scanning import Proposal, ScanRequest, scan_object
@@ -21,6 +21,7 @@ from core.session import Session
 from core.workers import WorkerPool
 from hardware.cell import read_cell
 from hardware.scanning.store import read_views
+from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.jobs.hosts import ListenedHost
 from tests.awake import AwakeClock
 
@@ -285,3 +286,24 @@ def test_what_cannot_be_scanned_is_a_sentence(scanning):
     assert failed.kind is FailureKind.EXPLAINED
     assert "did you mean" in failed.sentence
     assert not scanning.of(ArmConnected)
+
+
+def test_a_real_arm_waits_until_somebody_has_seen_its_route(process, cell, tmp_path):
+    pytest.importorskip("rtde_control")
+    with ControllerProcess(joints_rad=cell.robot.home_rad, speed_up=6.0) as controller:
+        real = cell.robot.model_copy(update={"kind": "ur5", "address": controller.address})
+        rehearsal = cell.model_copy(update={"robot": real, "is_rehearsal": True})
+        process.clear()
+        scanning = Scanning(process, rehearsal, SessionTask(tmp_path / "session", Parameters(), "default"))
+        scanning.start()
+        process.wait_for(ScanQuestion)
+        assert "5 views in about" in scanning.of(ScanQuestion)[0].sentence
+        scanning.until_at_rest()
+        assert not scanning.views()
+        process.host.order(ScanWork.resume)
+        scanning.until_views(1)
+        process.host.order(ScanWork.stop)
+        failed = scanning.end()
+        assert isinstance(failed, Failed)
+        assert failed.kind is FailureKind.CANCELLED
+        process.free()

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.cli.arm_commands import PrintingOperator
+from app.cli.operators import PrintingOperator
 from app.operations.pouring import pour_cup
 from core.errors import Cancelled
 from core.session.cups import Cup
@@ -21,6 +21,8 @@ class StoppedOnce:
     """A pour that is stopped, recovers at the second attempt, backs off, and succeeds."""
 
     is_interrupted = False
+    stops_on_the_way_back = 0
+    robot = SimpleNamespace(pending_step=lambda: None)
 
     def __init__(self, stopped_by: Exception, asked: list[str]) -> None:
         self._errors = [stopped_by]
@@ -47,6 +49,9 @@ class StoppedOnce:
         return ()
 
     def back_off(self, moves):
+        if self.stops_on_the_way_back:
+            self.stops_on_the_way_back -= 1
+            raise RobotError("A second protective stop.")
         self.is_interrupted = False
         self._asked.append("back off")
 
@@ -102,3 +107,13 @@ def test_without_an_operator_a_stop_ends_it(monkeypatch):
             StoppedOnce(RobotError("A protective stop."), asked), PrintingOperator(Path("x")), "UR5", CUP
         )
     assert asked == ["plan", "shown"]
+
+
+def test_a_stop_on_the_way_back_is_recovered_from_like_the_first():
+    asked: list[str] = []
+    stopped = StoppedOnce(RobotError("A protective stop."), asked)
+    stopped.stops_on_the_way_back = 2
+    assert pour_cup(stopped, Scripted(asked), "UR5", CUP) == RUN
+    again = ["recover?", "recover", "back off?"]
+    recovery = ["recover?", "again?", "recover", "back off?", *again, *again, "back off", "home"]
+    assert asked == ["plan", "pour?", *recovery, "plan", "pour?", "pour"]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from core.errors import InputError
 from core.motion.kinematics import flange_pose
 from core.scan.model import RgbdFrame
-from hardware.cell import SIMULATED_CELL, Cell, open_cell, read_cell
+from hardware.cell import SIMULATED_CELL, Cell, CellSettings, open_cell, read_cell
 from hardware.cell.settings import ARMS
 from hardware.errors import CameraLost
 from hardware.grippers.simulated import SimulatedGripper
@@ -90,6 +93,23 @@ def test_a_real_cell_has_the_real_arm_and_the_gripper_in_its_hand() -> None:
     assert cell.gripper.name == "gripper at tool output 0"
     without = REAL.gripper.model_copy(update={"kind": "simulated"})
     assert isinstance(open_cell(REAL.model_copy(update={"gripper": without})).gripper, SimulatedGripper)
+
+
+def test_a_rehearsal_drives_the_real_arm_in_front_of_a_simulated_camera(world: World) -> None:
+    table = json.loads(REAL.model_dump_json()) | {"camera": json.loads(SETTINGS.camera.model_dump_json())}
+    with pytest.raises(ValidationError, match="is_rehearsal"):
+        CellSettings.model_validate(table)
+    rehearsal = CellSettings.model_validate(table | {"is_rehearsal": True})
+    assert not rehearsal.is_simulated, "an arm moves"
+    cell = open_cell(rehearsal, world)
+    assert isinstance(cell.robot, UR5Robot)
+    assert cell.camera.name == "simulated camera"
+    with pytest.raises(ValidationError, match="a rehearsal has a simulated camera"):
+        CellSettings.model_validate(json.loads(REAL.model_dump_json()) | {"is_rehearsal": True})
+
+
+def test_what_is_no_rehearsal_is_recorded_as_before() -> None:
+    assert "is_rehearsal" not in SETTINGS.model_dump_json()
 
 
 def cell_of(world: World, log: list[str], is_camera_missing: bool) -> Cell:

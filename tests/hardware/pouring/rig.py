@@ -22,8 +22,9 @@ from core.progress import Reporter
 from core.session.pour_runs import PourRun
 from hardware.cell import CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
+from hardware.driving import refuse_unready
 from hardware.errors import RobotError, RobotLost
-from hardware.pouring.pouring import Pouring, refuse_unready
+from hardware.pouring.pouring import Pouring
 from tests.awake import AwakeClock
 
 BOX_SIZE_M = np.array([0.12, 0.12, 0.07])

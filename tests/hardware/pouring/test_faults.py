@@ -12,6 +12,7 @@ from core.session.pour_runs import PourRun, pour_runs
 from hardware.errors import (
     EmergencyStop,
     NotInRemoteControl,
+    OutputChanged,
     ProgramStopped,
     ProtectiveStop,
     RobotError,
@@ -107,6 +108,48 @@ def test_a_cup_that_is_being_grasped_is_left_at_its_station(rig):
     assert isinstance(thread.error, RobotError), repr(thread.error)
     recovers(rig)
     pours(rig)
+
+
+@pytest.mark.parametrize("move", ["lift", "carry", "pour", "carry back"])
+def test_a_gripper_that_lets_go_stops_the_arm_which_goes_home_without_a_cup(rig, move):
+    thread = rig.pour_until(move, 0.4)
+    rig.controller.command("output lost")
+    rested_after_s = rig.seconds_to_rest()
+    thread.join(HANG_S)
+
+    assert rested_after_s < AT_REST_WITHIN_S
+    assert isinstance(thread.error, OutputChanged), repr(thread.error)
+    is_explained(thread.error)
+    session_is_intact(rig)
+    rig.pouring.recover()
+    back = rig.pouring.plan_back_off()
+    assert not any(move.holds_cup for move in back)
+    rig.pouring.back_off(back)
+    assert rig.is_home
+
+
+def test_a_gripper_that_never_closes_is_noticed_at_the_cup(rig):
+    rig.controller.command("ignore outputs")
+    thread = rig.pour_in_background()
+    thread.join(HANG_S)
+    rig.controller.command("heed outputs")
+    assert "did not change" in str(thread.error)
+    recovers(rig)
+
+
+@pytest.mark.parametrize("fault", ["program stop", "protective stop"])
+def test_a_second_stop_on_the_way_back_has_a_way_back_too(rig, fault):
+    thread = rig.pour_until("carry", 0.6)
+    rig.controller.command("program stop")
+    thread.join(HANG_S)
+    rig.pouring.recover()
+    moves = rig.pouring.plan_back_off()
+    rig.controller.command(f"when moving in 0.2 {fault}")
+    with pytest.raises(RobotError):
+        rig.pouring.back_off(moves)
+    assert rig.pouring.is_interrupted
+    assert rig.arm.gripper.is_closed
+    recovers(rig)
 
 
 def test_a_slow_link_costs_time_and_nothing_else(rig):

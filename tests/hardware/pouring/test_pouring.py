@@ -8,16 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.errors import MotionError
+from core.errors import Cancelled, MotionError
 from core.motion.pour.plan import PourPlan
 from core.progress import Reporter
 from core.session.pour_runs import PourRun, pour_runs
 from hardware.cell import Arm
 from hardware.cell.scene import motion_scene, pour_cell
 from hardware.cell.settings import ARMS
-from hardware.errors import DeviceError, TrackingLost
+from hardware.driving import refuse_deviation, slowness
+from hardware.errors import DeviceError, OutputChanged, TrackingLost
 from hardware.grippers.simulated import SimulatedGripper
-from hardware.pouring.pouring import Pouring, refuse_deviation
+from hardware.modes import SafetyMode
+from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
 from tests.hardware.pouring.rig import a_target, quick_cell
 
@@ -132,6 +134,25 @@ def test_a_gripper_that_does_not_close_ends_the_run_and_the_hand_withdraws(fresh
     assert arm.robot.state().joints_rad == pytest.approx(HOME)
 
 
+def test_a_gripper_that_opens_in_the_carry_ends_the_run_and_the_hand_goes_home_empty(fresh_plan, tmp_path):
+    class Slipping(SimulatedGripper):
+        @property
+        def is_closed(self):
+            was_asked, self._asked = self._asked, self._asked + 1
+            return self._is_closed and was_asked < 4
+
+        _asked = 0
+
+    arm = an_arm(Slipping())
+    pouring = a_pouring(arm, tmp_path)
+    with pytest.raises(OutputChanged, match="open while it should hold the cup"):
+        pouring.carry_out(fresh_plan)
+    pouring.recover()
+    assert not any(move.holds_cup for move in pouring.plan_back_off())
+    pouring.back_off(pouring.plan_back_off())
+    assert arm.robot.state().joints_rad == pytest.approx(HOME)
+
+
 def test_an_arm_that_was_pushed_after_a_stop_is_not_driven_back(fresh_plan, tmp_path):
     class Broken(SimulatedGripper):
         def close(self):
@@ -154,3 +175,30 @@ def test_an_arm_off_its_path_is_stopped(fresh_plan):
     refuse_deviation(replace(state, joints_rad=trajectory.joints_rad[50] + 0.03), trajectory)
     with pytest.raises(TrackingLost, match="off its planned path"):
         refuse_deviation(replace(state, joints_rad=trajectory.joints_rad[50] + 0.3), trajectory)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, ""),
+        ({"speed_scaling": 0.4}, "slider is at 40%"),
+        ({"speed_scaling": 0.0}, "slider is at 0: nothing moves"),
+        ({"safety_mode": SafetyMode.REDUCED}, "reduced mode"),
+    ],
+)
+def test_what_makes_the_arm_slow_is_said(changes, said):
+    assert said in slowness(replace(an_arm().robot.state(), **changes))
+    assert bool(slowness(replace(an_arm().robot.state(), **changes))) is bool(said)
+
+
+def test_a_cancelled_pour_and_its_recovery_are_in_the_log(fresh_plan, tmp_path):
+    pouring = a_pouring(an_arm(), tmp_path)
+    pouring._reporter.cancel()
+    robot = pouring.robot
+    robot._is_instant = False
+    with pytest.raises(Cancelled, match="at rest where it was stopped") as stopped:
+        pouring.carry_out(fresh_plan)
+    assert stopped.value.remedy is None, "the same command would be refused"
+    pouring.recover()
+    kinds = [event["kind"] for event in PourRun.load(pouring.last_run).events]
+    assert kinds[-2:] == ["stopped", "recovered"]

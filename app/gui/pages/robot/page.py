@@ -307,6 +307,9 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
             outcome.show_run(run, known or procedure.cup.n_candies, procedure.failure)
 
     def _primary_text(self, step: Step) -> str:
+        pending = self.procedure.pending
+        if step is Step.CONNECT and pending is not None:
+            return pending.step.value.capitalize()
         texts = {
             Step.EMPTY: "" if self.missing is None else self.missing.button,
             Step.CONNECT: self.tr("Connect"),

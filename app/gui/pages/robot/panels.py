@@ -76,8 +76,8 @@ class StartPanel(Panel):
             text = self.tr("Reading the cell file …")
         elif cell.robot.is_real:
             text = self.tr(
-                "{name}: a real {model} at {address}. Connecting moves nothing; it replaces the program that "
-                "runs on the controller, and sets tool frame, payload and the tool's voltage there."
+                "{name}: a real {model} at {address}. Connecting moves nothing; it starts a program on a "
+                "controller that runs no other, and sets tool frame, payload and the tool's voltage there."
             ).format(name=cell.name, model=cell.robot.model, address=cell.robot.address)
         else:
             text = self.tr(

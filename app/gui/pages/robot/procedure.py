@@ -14,7 +14,7 @@ from app.gui.desk.jobs import RunningJob
 from app.gui.pages.robot.motion import ShownMotion
 from app.gui.pages.robot.steps import Activity, Situation, Step
 from app.gui.remedies import worded
-from app.jobs.arm_events import MoveProgress, PlannedBackOff, PlannedPour
+from app.jobs.arm_events import MoveProgress, PlannedBackOff, PlannedPour, StepPending
 from app.jobs.arm_work import ArmWork
 from app.jobs.host import Host
 from app.jobs.messages import Failed, FailureKind
@@ -44,6 +44,7 @@ class PourProcedure(QObject):
     Attributes:
         planned: the pour that was planned and is shown; none if none is.
         planned_back_off: the return after a stop, the same.
+        pending: what has to be done before the arm can be connected; none if nothing is known to be.
         run: whose outcome is asked for; none if none is.
         failure: why the last job failed, in a sentence; empty if it did not.
         stopped: why the arm was stopped the last time, until it has come back.
@@ -59,6 +60,7 @@ class PourProcedure(QObject):
     def __init__(self, desk: Desk, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.planned: PlannedPour | None = None
+        self.pending: StepPending | None = None
         self.planned_back_off: PlannedBackOff | None = None
         self.run: Path | None = None
         self.failure = self.stopped = ""
@@ -117,7 +119,7 @@ class PourProcedure(QObject):
 
     def prepare(self) -> None:
         """Connect the arm if none is, and plan; nothing moves."""
-        if self.step is Step.CONNECT:
+        if self.step is Step.CONNECT and self.pending is None:
             self._connect_arm(then=lambda _: self.plan())
         elif self.step is Step.PLAN:
             self.plan()
@@ -129,8 +131,11 @@ class PourProcedure(QObject):
     def _connect_arm(self, then: Callable[[Any], None] | None) -> None:
         cell = self._desk.cell.settings
         if cell is not None:
+            pending, self.pending = self.pending, None
+            step = None if pending is None or cell != self._cell else pending.step
             self._cell = cell
-            self._start(Activity.CONNECTING, self.tr("Connect the arm"), ArmWork.connect, cell, then=then)
+            title = self.tr("Connect the arm")
+            self._start(Activity.CONNECTING, title, ArmWork.connect, cell, step, then=then)
 
     def disconnect_arm(self) -> None:
         """Let the arm go."""
@@ -289,6 +294,8 @@ class PourProcedure(QObject):
     def _hear(self, news: object) -> None:
         if isinstance(news, MoveProgress):
             self.moved.emit(news)
+        elif isinstance(news, StepPending):
+            self.pending = news
 
     def _follow_arm(self) -> None:
         """An arm that is gone or was stopped takes its plans with it."""
@@ -325,7 +332,7 @@ class PourProcedure(QObject):
             self.planned = self.planned_back_off = None  # a plan is carried out once at most
             self.stopped = failed.sentence
         elif failed.kind is not FailureKind.CANCELLED:
-            self.failure = failed.sentence
+            self.failure = failed.sentence if self.pending is None else self.pending.sentence
         self._settle()
         self.changed.emit()
 

@@ -17,7 +17,7 @@ from app.gui.pages.scan.situation import Action, Situation, remarks_of, verdict_
 from app.gui.pages.scan.views import ShownImages, ViewTable
 from app.gui.pages.scan.work import ScanJobs
 from app.gui.views.scene import PreparedMesh, prepare_mesh
-from app.jobs.scan_events import MeshGrown, ViewDone, ViewsPlanned
+from app.jobs.scan_events import MeshGrown, ScanQuestion, ViewDone, ViewsPlanned
 from app.operations.scanning import Proposal, ScanRequest
 from core.pipeline.freshness import Freshness
 
@@ -39,6 +39,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
         self._grown: PreparedMesh | None = None
         self._proposal: Proposal | None = None
         self._can_pause = self._is_paused = False
+        self._question = ""
         self._is_pressed = self._has_arm = False
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -121,7 +122,9 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
     def _hear(self, news: object) -> None:
         if not self._work.is_scanning:
             return
-        if isinstance(news, ViewsPlanned):
+        if isinstance(news, ScanQuestion):
+            self._question, self._can_pause, self._is_paused = news.sentence, True, True
+        elif isinstance(news, ViewsPlanned):
             self._can_pause = True
             self._own_views()
             self._views.plan(news)
@@ -198,6 +201,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
         if self._is_paused:
             self._work.pause()
         else:
+            self._question = ""
             self._work.resume()
         self.update_actions()
 
@@ -214,6 +218,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             self.left.view.show_mesh(None)
         self._proposal = None
         self._can_pause = self._is_paused = False
+        self._question = ""
         self._images.forget()
         self._follow()
         self._work.scan(source, request)
@@ -277,6 +282,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             is_scanning=self._work.is_scanning,
             can_pause=self._can_pause,
             is_paused=self._is_paused,
+            question=self._question,
             is_checking=running is not None and running.page == self.KEY,
             is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
             is_stale=desk.workspace.stages.get("quality") is Freshness.STALE,

@@ -243,7 +243,7 @@ class ObjectChoice(QWidget):
 def _kind(cell: CellSettings | None) -> str:
     if cell is None:
         return ""
-    if cell.is_simulated:
+    if cell.has_simulated_object:
         return "simulated"
     return "replay" if cell.camera.kind == "replay" else "real"
 

@@ -44,6 +44,7 @@ class Situation:
         is_scanning: whether the arm takes views.
         can_pause: whether the scan has begun and listens.
         is_paused: whether it was asked to wait.
+        question: what it waits for, in a sentence; empty if somebody paused it.
         is_checking: whether another job of this page is running.
         is_arm_taken: whether the process that pours holds the real arm.
         is_stale: whether the verdict is from before something was changed.
@@ -60,6 +61,7 @@ class Situation:
     is_scanning: bool
     can_pause: bool
     is_paused: bool
+    question: str
     is_checking: bool
     is_arm_taken: bool
     is_stale: bool
@@ -172,6 +174,8 @@ def _scanning(now: Situation) -> Verdict:
     done, total = now.views.n_done, len(now.views.views)
     if not now.can_pause:
         return Verdict("running", translate("ScanPage", "Connecting to the cell …"))
+    if now.is_paused and now.question:
+        return Verdict("stale", now.question, (translate("ScanPage", "Resume says yes, Cancel says no."),))
     if now.is_paused:
         said = translate("ScanPage", "Paused: {n} of {total} views taken.").format(n=done, total=total)
         return Verdict("stale", said, (translate("ScanPage", "The arm stops after the current view."),))

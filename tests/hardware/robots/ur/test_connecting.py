@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import socket
 import threading
@@ -22,10 +23,12 @@ from hardware.errors import (
     RobotUnreachable,
     WrongRobot,
 )
+from hardware.interfaces import ReadyStep
 from hardware.robots.ur.probe import DASHBOARD_PORT, DATA_PORT, SCRIPT_PORT
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import within
-from tests.hardware.robots.ur.bench import HOME, Bench, driver
+from tests.hardware.robots.ur.bench import HOME, VERSIONS, Bench, bent_way, driver
+from tests.patience import wait_until
 
 EMPTY_ADDRESS = f"127.83.{os.getpid() % 256}.7"
 """Each test process its own: what one listens on must be empty for the other."""
@@ -77,7 +80,7 @@ def test_somebody_else_with_one_port(listeners: list[socket.socket]) -> None:
 
 def test_a_controller_that_froze(controller: ControllerProcess) -> None:
     controller.command("link silent 6")
-    refuses(controller.address, RobotUnreachable, "no UR controller")
+    refuses(controller.address, RobotUnreachable, "sends nothing, as no UR controller .* restart")
 
 
 def test_another_model(controller: ControllerProcess) -> None:
@@ -145,3 +148,95 @@ def test_it_may_be_entered_again(controller: ControllerProcess) -> None:
             assert robot.state().is_program_running
         with pytest.raises(RobotLost, match="not connected"):
             robot.state()
+
+
+def written(controller: ControllerProcess) -> list[dict[str, object]]:
+    """What the controller was told to do so far: all but questions."""
+    questions = ("quit", "polyscopeversion", "programstate", "get robot model", "is in remote control")
+    entries = json.loads(controller.command("log 2000"))
+    return [
+        entry
+        for entry in entries
+        if entry["what"] in ("script", "digital outputs", "command", "slider")
+        or (entry["what"] == "dashboard" and entry["line"].lower() not in questions)
+    ]
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_looking_writes_nothing_and_knows_the_arm(version: str) -> None:
+    with ControllerProcess(version=version, joints_rad=HOME, faults=["slider 0.5"]) as controller:
+        robot = driver(controller.address, tool_voltage_v=12)
+        seen = robot.look()
+        assert seen.joints_rad == pytest.approx(HOME)
+        assert seen.slider == 0.5
+        assert seen.has_free_inputs
+        assert robot.pending_step() is None
+        assert not written(controller)
+        controller.command("model UR5e")
+        with pytest.raises(WrongRobot):
+            robot.look()
+        assert not written(controller)
+
+
+def test_looking_at_an_arm_that_is_driven_disturbs_nothing(bench: Bench) -> None:
+    move = bench.robot.follow(bent_way(1.5))
+    before = written(bench.controller)
+    robot = driver(bench.controller.address, tool_voltage_v=12)
+    seen = robot.look()
+    assert not seen.has_free_inputs
+    refuses(bench.controller.address, RobotNotReady, r"Another program \(PLAYING .*\) drives .* moves")
+    assert written(bench.controller)[: len(before)] == before
+    assert not any(entry["what"] == "script" for entry in written(bench.controller)[len(before) :])
+    assert bench.truth()["tool_voltage_v"] == 24
+    move.wait(20)
+
+
+def test_the_tools_voltage_is_set_when_nothing_is_held(controller: ControllerProcess) -> None:
+    bench = Bench(controller, driver(controller.address, tool_voltage_v=12))
+    with bench.robot as robot:
+        assert bench.truth()["tool_voltage_v"] == 12
+        robot.set_tool_output(0, True)
+    with pytest.raises(RobotNotReady, match="12 V where the cell file says 24 V"):
+        driver(controller.address, tool_voltage_v=24).__enter__()
+    assert bench.truth()["tool_voltage_v"] == 12
+    with driver(controller.address, tool_voltage_v=12):
+        assert bench.truth()["tool_outputs"] == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("fault", "steps"),
+    [
+        ("power off", [ReadyStep.POWER_ON, ReadyStep.RELEASE_BRAKES]),
+        ("protective stop", [ReadyStep.UNLOCK]),
+        ("safety fault", [ReadyStep.RESTART_SAFETY, ReadyStep.POWER_ON, ReadyStep.RELEASE_BRAKES]),
+        ("foreign moving", [ReadyStep.END_PROGRAM]),
+        ("foreign still", [ReadyStep.END_PROGRAM]),
+    ],
+)
+def test_an_arm_that_is_not_ready_gets_ready_step_by_step(fault: str, steps: list[ReadyStep]) -> None:
+    with ControllerProcess(joints_rad=HOME, speed_up=4.0, faults=[fault]) as controller:
+        robot = driver(controller.address)
+        for step in steps:
+            wait_until(lambda: robot.pending_step() is not None)
+            with pytest.raises(RobotError), robot:
+                pass
+            pending, why = robot.pending_step()
+            assert pending is step
+            assert "UR5 at 127" in why
+            assert ("the arm moves" in why) == (fault == "foreign moving")
+            assert not any(entry["what"] == "script" for entry in written(controller))
+            robot.take_step(step)
+        assert robot.pending_step() is None
+        with robot:
+            assert robot.state().is_program_running
+
+
+def test_a_foreign_program_is_not_ended_by_recovering(bench: Bench) -> None:
+    bench.robot.stop()
+    bench.controller.command("foreign moving")
+    with pytest.raises(RobotNotReady, match="Another program runs"):
+        bench.robot.recover()
+    assert bench.truth()["runtime_state"] == "PLAYING"
+    bench.robot.take_step(ReadyStep.END_PROGRAM)
+    bench.robot.recover()
+    bench.works_again()

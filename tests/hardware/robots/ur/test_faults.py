@@ -19,6 +19,7 @@ from hardware.errors import (
 )
 from hardware.grippers.tool_output import ToolOutputGripper
 from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.awake import AwakeClock
 from tests.hardware.robots.ur.bench import (
     HOME,
     NEAR,
@@ -31,6 +32,9 @@ from tests.patience import wait_until
 
 pytestmark = pytest.mark.system
 
+NOTICED_WITHIN_S = 0.3
+NOTICED_MOVING_S = 0.45
+"""A program that moves the arm nearly along its path is told from a lagging arm somewhat later."""
 KINDS = pytest.mark.parametrize("kind", ["move_joints", "follow"])
 
 
@@ -179,3 +183,51 @@ def test_a_program_that_does_not_start_is_said_and_a_protective_stop_waits_for_i
         fast_bench.robot.recover()
     fast_bench.controller.command("heed uploads")
     fast_bench.works_again()
+
+
+@KINDS
+@pytest.mark.parametrize(
+    "fault", ["foreign still", "foreign moving", "foreign gap still", "foreign gap moving"]
+)
+def test_another_program_that_takes_over_is_noticed_and_the_arm_stands(
+    bench: Bench, kind: str, fault: str
+) -> None:
+    move = bench.begin(kind)
+    with AwakeClock() as clock:
+        began_s = clock.now_s()
+        bench.controller.command(fault)
+        with pytest.raises(RobotError):
+            move.wait(5)
+        if kind == "follow":  # all that is driven to scan and to pour
+            assert clock.now_s() - began_s < (
+                NOTICED_MOVING_S if fault == "foreign moving" else NOTICED_WITHIN_S
+            )
+        wait_until(lambda: not bench.is_moving(), 1)
+    assert bench.stays_where_it_is(0.5)
+    assert bench.truth()["runtime_state"] == "STOPPED"
+    bench.works_again()
+
+
+def test_a_control_thread_that_is_stuck_is_noticed(bench: Bench) -> None:
+    move = bench.begin("follow")
+    with AwakeClock() as clock:
+        began_s = clock.now_s()
+        bench.controller.command("program hangs")
+        with pytest.raises(RobotError):
+            move.wait(5)
+        assert clock.now_s() - began_s < NOTICED_WITHIN_S
+    wait_until(lambda: bench.truth()["runtime_state"] == "STOPPED", STANDS_WITHIN_S)
+    assert bench.stays_where_it_is()
+    bench.works_again()
+
+
+@pytest.mark.parametrize("slider", [0.05, 0.5])
+def test_a_speed_slider_that_is_moved_is_no_fault(bench: Bench, slider: float) -> None:
+    move = bench.begin("follow")
+    bench.controller.command(f"slider {slider:g}")
+    time.sleep(0.7)
+    assert not move.is_done
+    bench.controller.command("slider 0")
+    time.sleep(0.5)
+    bench.controller.command("slider 1")
+    move.wait(20)

@@ -23,6 +23,7 @@ from tests.patience import wait_until
 pytestmark = pytest.mark.system
 
 NOTICED_WITHIN_S = 0.5
+SUSPENDED_RESTS_WITHIN_S = 1.0
 STANDS_STILL_S = 0.6
 """Longer than the controller's watchdog and the driver wait for a word."""
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
@@ -147,3 +148,45 @@ if __name__ == "__main__":
         arm.move_joints([HOME, HOME + 2.0], 1.0, 4.0)
         print(arm._connected().worker.process_id, flush=True)
         time.sleep(60)
+
+
+SUSPENDED = """
+import sys
+import numpy as np
+from core.motion.trajectory import JointTrajectory
+from tests.hardware.robots.ur.bench import FAR, HOME, driver
+
+times_s = np.arange(0, 8, 0.008)
+share = (1 - np.cos(np.pi * times_s / times_s[-1])) / 2
+with driver(sys.argv[1]) as robot:
+    move = robot.follow(JointTrajectory(times_s, HOME + np.outer(share, FAR - HOME)))
+    print("moves", flush=True)
+    try:
+        move.wait(30)
+    except Exception as error:
+        print(type(error).__name__, error, flush=True)
+    try:
+        robot.move_joints([robot.state().joints_rad, HOME], 1.0, 1.0)
+    except Exception as error:
+        print("refused", error, flush=True)
+"""
+
+
+def test_a_program_that_was_suspended_does_not_go_on(controller: ControllerProcess) -> None:
+    bench = Bench(controller, driver(controller.address))
+    with subprocess.Popen(
+        [sys.executable, "-c", SUSPENDED, controller.address], stdout=subprocess.PIPE, text=True
+    ) as program:
+        assert program.stdout is not None
+        assert program.stdout.readline() == "moves\n"
+        wait_until(lambda: np.abs(bench.truth()["speeds_rad_s"]).max() > 0.1)
+        os.kill(program.pid, signal.SIGSTOP)
+        with AwakeClock() as clock:
+            began_s = clock.now_s()
+            wait_until(lambda: not bench.is_moving())
+            assert clock.now_s() - began_s < SUSPENDED_RESTS_WITHIN_S
+        assert bench.stays_where_it_is(0.5)
+        os.kill(program.pid, signal.SIGCONT)
+        assert program.stdout.readline().startswith("RobotStopped This program stood still")
+        assert program.stdout.readline().startswith("refused")
+        assert bench.stays_where_it_is()

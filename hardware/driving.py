@@ -1,0 +1,182 @@
+"""Following planned motions with an arm that is watched meanwhile; whoever pours and scans shares it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Protocol
+
+import numpy as np
+
+from core.geometry import FloatArray
+from core.motion.trajectory import JointTrajectory
+from core.progress import Reporter
+from hardware.errors import DeviceError, RobotError, RobotLost, TrackingLost
+from hardware.interfaces import Move, Robot, RobotState
+from hardware.modes import SafetyMode, unreadiness
+
+SAME_PLACE_RAD = 2e-3
+AT_REST_RAD_S = 2e-3
+MOST_TIMES_PLANNED = 10.0
+"""With the speed slider at 10 % a move takes ten times as long; beyond that something holds the arm."""
+PATIENCE_S = 10.0
+REST_WITHIN_S = 1.0
+MAX_AGE_S = 0.5
+MAX_DEVIATION_RAD = 0.06
+"""A servoed arm lags on its path, which is not a deviation from it."""
+_POLL_S = 0.005
+
+
+class StateLog(Protocol):
+    """Keeps states of the arm."""
+
+    def state(self, move: str, state: RobotState) -> None:
+        """Log a state during a move of this name."""
+        ...
+
+
+class WatchedArm:
+    """Follows one motion after the other; any fault raises, and `stop` brings the arm to rest then."""
+
+    def __init__(self, robot: Robot, log: StateLog, reporter: Reporter) -> None:
+        """Drive a connected arm; `log` keeps its states, `reporter` knows whether somebody cancels."""
+        self._robot = robot
+        self._log = log
+        self._reporter = reporter
+
+    def ready_state(self) -> RobotState:
+        """Return the newest state of an arm that may be commanded.
+
+        Raises:
+            RobotError: it may not; its kind and sentence say why.
+        """
+        state = self._robot.state()
+        if state.age_s > MAX_AGE_S:
+            # this computer was suspended since then, and the arm may have reported more
+            state = self._robot.state()
+        refuse_unready(state)
+        return state
+
+    def refuse_elsewhere(self, start_rad: FloatArray) -> None:
+        """Refuse an arm that is not at rest at (6,): plans are made from there.
+
+        Raises:
+            TrackingLost: it is elsewhere, or moves.
+        """
+        state = self.ready_state()
+        apart_rad = np.abs(state.joints_rad - start_rad).max()
+        if apart_rad > SAME_PLACE_RAD or np.abs(state.joint_speeds_rad_s).max() > AT_REST_RAD_S:
+            raise TrackingLost(
+                "The arm is not at rest where the plan starts (a joint is "
+                f"{np.degrees(apart_rad):.1f} degrees off); plan again."
+            )
+        slow = slowness(state)
+        if slow:
+            self._reporter.warn(slow)
+
+    def follow(
+        self,
+        trajectory: JointTrajectory,
+        name: str,
+        label: str,
+        watch: Callable[[RobotState, float], None] = lambda *_: None,
+    ) -> None:
+        """Follow a motion to its end.
+
+        Args:
+            trajectory: of the joints.
+            name: of the motion, for the log.
+            label: as shown to the user.
+            watch: called with every state and the share that is done; what it raises ends the motion.
+
+        Raises:
+            Cancelled: a stop was requested. The arm may still move: call `stop`.
+            DeviceError: the sentence says what happened. The same.
+        """
+        self.ready_state()
+        handle = self._robot.follow(trajectory)
+        self._watch(handle, trajectory, name, label, watch)
+        handle.wait(REST_WITHIN_S)
+        self._log.state(name, self.ready_state())
+
+    def stop(self) -> FloatArray | None:
+        """Stop the arm and wait for its rest; return its joints (6,), or none if it does not answer."""
+        with suppress(DeviceError):
+            self._robot.stop()
+        with suppress(DeviceError):
+            return self._wait_for_rest().joints_rad
+        return None
+
+    def _watch(
+        self,
+        handle: Move,
+        trajectory: JointTrajectory,
+        name: str,
+        label: str,
+        watch: Callable[[RobotState, float], None],
+    ) -> None:
+        deadline_s = time.monotonic() + MOST_TIMES_PLANNED * trajectory.duration_s + PATIENCE_S
+        while not handle.is_done:
+            self._reporter.raise_if_cancelled()
+            state = self.ready_state()
+            self._log.state(name, state)
+            refuse_deviation(state, trajectory)
+            watch(state, handle.progress)
+            if time.monotonic() > deadline_s:
+                raise RobotError(
+                    f"The arm did not finish '{label}' in time and was stopped; find out what holds it."
+                )
+            time.sleep(_POLL_S)
+
+    def _wait_for_rest(self) -> RobotState:
+        deadline_s = time.monotonic() + REST_WITHIN_S
+        while True:
+            state = self._robot.state()
+            is_at_rest = np.abs(state.joint_speeds_rad_s).max() < AT_REST_RAD_S
+            if is_at_rest or time.monotonic() > deadline_s:
+                return state
+            time.sleep(_POLL_S)
+
+
+_FULL_SPEED, _STILL = 0.99, 0.005
+
+
+def slowness(state: RobotState) -> str:
+    """Say why the arm will be slower than planned; empty if it will not."""
+    if state.safety_mode is SafetyMode.REDUCED:
+        return "The safety system is in reduced mode, so the arm is slower than planned, or is stopped by it."
+    if state.speed_scaling < _STILL:
+        return "The speed slider is at 0: nothing moves until somebody raises it at the panel."
+    if state.speed_scaling < _FULL_SPEED:
+        return f"The speed slider is at {state.speed_scaling:.0%}: everything takes longer than planned."
+    return ""
+
+
+def refuse_unready(state: RobotState) -> None:
+    """Refuse a state in which the arm must not be commanded.
+
+    Raises:
+        RobotError: its kind and sentence say why.
+    """
+    if state.age_s > MAX_AGE_S:
+        raise RobotLost(
+            f"The arm has not reported for {state.age_s:.1f} s; look at it, and check its network cable."
+        )
+    unready = unreadiness(state.safety_mode, state.robot_mode)
+    if unready is not None:
+        raise unready
+
+
+def refuse_deviation(state: RobotState, trajectory: JointTrajectory) -> None:
+    """Refuse a state that is off the path.
+
+    Raises:
+        TrackingLost: a joint is too far from every sample of the path.
+    """
+    deviation_rad = float(np.abs(trajectory.joints_rad - state.joints_rad).max(axis=1).min())
+    if deviation_rad > MAX_DEVIATION_RAD:
+        raise TrackingLost(
+            f"The arm is {np.degrees(deviation_rad):.1f} degrees off its planned path and was stopped; "
+            "find out what holds or pushes it."
+        )

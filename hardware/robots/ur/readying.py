@@ -1,0 +1,144 @@
+"""What has to be done before an arm can be connected, one step at a time, each known before it is taken."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.motion.arm_models import ArmModel
+from hardware.errors import RobotNotReady
+from hardware.interfaces import ReadyStep
+from hardware.modes import RobotMode, SafetyMode
+from hardware.robots.ur.checks import refuse_other_kinematics
+from hardware.robots.ur.dashboard import Dashboard, restart_safety, switch_on, unlock
+from hardware.robots.ur.glance import Glance
+from hardware.robots.ur.pose_vectors import pose_from_vector
+
+_SAFETY_RESTARTS = (SafetyMode.FAULT, SafetyMode.VIOLATION)
+
+
+@dataclass(frozen=True)
+class Tool:
+    """What is set for the tool on the controller.
+
+    Attributes:
+        voltage_v: supply of its connector; none: as set on the panel.
+        tolerances: how far the reported tool may be from where the model's kinematics put it, in metres,
+            and how far turned, in radians.
+    """
+
+    voltage_v: int | None
+    tolerances: tuple[float, float]
+
+
+def next_step(dashboard: Dashboard, seen: Glance, name: str) -> tuple[ReadyStep, str] | None:
+    """Return what has to be done first, and a sentence on what it is for; none if nothing is in the way."""
+    program = dashboard.program()
+    if program is not None:
+        moves = ", and the arm moves" if seen.is_moving else ""
+        return ReadyStep.END_PROGRAM, (
+            f"Another program is on the {name} ({program}){moves}; ending it stops what it does."
+        )
+    if seen.safety_mode in _SAFETY_RESTARTS:
+        return ReadyStep.RESTART_SAFETY, (
+            f"The safety system of the {name} is in '{seen.safety_mode.words}'; see on its panel why before "
+            "it is started again."
+        )
+    if seen.safety_mode is SafetyMode.PROTECTIVE_STOP:
+        return ReadyStep.UNLOCK, (
+            f"The {name} is in a protective stop; see what the arm touched or what was too fast for it "
+            "before it is unlocked."
+        )
+    if seen.safety_mode.may_move and seen.robot_mode is not RobotMode.RUNNING:
+        is_on = seen.robot_mode is RobotMode.IDLE
+        return (ReadyStep.RELEASE_BRAKES if is_on else ReadyStep.POWER_ON), (
+            f"The {name} is in '{seen.robot_mode.words}'; "
+            + ("its brakes are released" if is_on else "its power is switched on")
+            + " when nobody is near."
+        )
+    return None
+
+
+def take_step(dashboard: Dashboard, step: ReadyStep, name: str) -> None:
+    """Do what has to be done; the arm does not move along any path.
+
+    Raises:
+        RobotError: it could not be done; the sentence says what a person has to do.
+    """
+    if step is ReadyStep.END_PROGRAM:
+        dashboard.end_program()
+    elif step is ReadyStep.RESTART_SAFETY:
+        restart_safety(dashboard, name)
+    elif step is ReadyStep.UNLOCK:
+        unlock(dashboard, name)
+    else:
+        switch_on(dashboard, name, has_brakes_released=step is ReadyStep.RELEASE_BRAKES)
+
+
+def refuse_taken(dashboard: Dashboard, seen: Glance, name: str) -> None:
+    """Refuse a controller that another program or another client has: nothing is written to it.
+
+    Raises:
+        RobotNotReady: it has.
+    """
+    program = dashboard.program()
+    if program is not None or not seen.has_free_inputs:
+        what = "Another program" if program is None else f"Another program ({program})"
+        moves = ", and the arm moves" if seen.is_moving else ""
+        raise RobotNotReady(f"{what} drives the {name} already{moves}; end it, then recover the robot.")
+
+
+def refuse_other_arm(seen: Glance, arm: ArmModel, tool: Tool) -> None:
+    """Refuse an arm whose kinematics are not the model's, by the tool frame that is set on it now.
+
+    Raises:
+        WrongRobot: they are not.
+    """
+    if seen.tool_offset is not None:
+        refuse_other_kinematics(
+            np.array(seen.joints_rad),
+            np.array(seen.tool_pose),
+            arm,
+            pose_from_vector(seen.tool_offset),
+            tool.tolerances,
+        )
+
+
+def must_set_voltage(seen: Glance, tool: Tool, name: str) -> bool:
+    """Whether the tool's supply is not what it should be.
+
+    Raises:
+        RobotNotReady: it is not, and an output of the tool is on: what is held would drop.
+    """
+    if tool.voltage_v is None or seen.tool_voltage_v == tool.voltage_v:
+        return False
+    if any(seen.tool_outputs) and seen.tool_voltage_v is not None:
+        raise RobotNotReady(
+            f"The tool connector of the {name} has {seen.tool_voltage_v} V where the cell file says "
+            f"{tool.voltage_v} V, and a tool output is on: a change would drop what the gripper holds; empty "
+            "the hand and switch the output off at the panel, or correct voltage_v."
+        )
+    return True
+
+
+_OURS_ENDS_WITHIN_S = 1.0
+_POLL_S = 0.01
+
+
+def refuse_foreign_program(dashboard: Dashboard, name: str) -> None:
+    """Refuse to recover where somebody else's program runs.
+
+    Our own ends by its watchdog once its worker is gone, and one that is paused does not move.
+
+    Raises:
+        RobotNotReady: one runs on.
+    """
+    deadline_s = time.monotonic() + _OURS_ENDS_WITHIN_S
+    while (program := dashboard.program()) is not None and program.upper().startswith("PLAYING"):
+        if time.monotonic() > deadline_s:
+            raise RobotNotReady(
+                f"Another program runs on the {name} ({program}); end it, then recover the robot again."
+            )
+        time.sleep(_POLL_S)
