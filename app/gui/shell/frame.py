@@ -59,6 +59,7 @@ class TopBar(QFrame):
             row.addWidget(chip)
         row.addWidget(self.stop)
         desk.workspace.session_changed.connect(self._show_session)
+        desk.workspace.renamed.connect(self._show_session)
         jobs = desk.jobs
         for signal in (desk.cell.changed, desk.arm.changed, jobs.started, jobs.finished, jobs.failed):
             signal.connect(lambda *_: self._show_devices())

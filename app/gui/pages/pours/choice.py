@@ -19,7 +19,7 @@ from core.report import (
     tries_sentence,
     verdict_sentence,
 )
-from core.report.sentences import NO_POURS, direction_text, ratio_text
+from core.report.sentences import NO_POURS, direction_text, duration_text, ratio_text
 
 MM = 1000.0
 
@@ -247,8 +247,8 @@ def feasibility_sentence(pours: ShownPours, i: int, j: int) -> str:
         return _tr("Not checked with this cell's arm since the pours were imagined.")
     if not found.is_feasible:
         return _tr("The arm cannot make it: {reason}").format(reason=found.reason)
-    return _tr("The arm can make it in {seconds:.0f} s, with {mm:.0f} mm clearance.").format(
-        seconds=found.duration_s, mm=MM * found.clearance_m
+    return _tr("The arm can make it in {time}, with {mm:.0f} mm clearance.").format(
+        time=duration_text(found.duration_s), mm=MM * found.clearance_m
     )
 
 
