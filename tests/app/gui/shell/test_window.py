@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import psutil
 import pytest
 from PySide6.QtCore import QEvent, QObject, Qt, QTimer
@@ -16,6 +19,7 @@ from app.gui.shell.job_bar import MessageBar
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
 from app.gui.theme import DARK, LIGHT, apply_theme, theme_of
+from app.jobs.arm_events import ArmStatus
 from app.jobs.messages import FailureKind
 from app.jobs.session_work import SessionWork
 from app.library.session_folder import remembered_parameters
@@ -278,3 +282,15 @@ def test_an_edit_is_kept_though_nothing_was_run_with_it(window, mug_session, qtb
     workspace.close()
     window.desk.open_session(mug_session)
     assert workspace.parameters.seed == 77
+
+
+def test_an_arm_that_moves_is_said_to_move(window):
+    arm, chip = window.desk.arm, window.findChild(Chip, "robot_chip")
+    arm.connected = SimpleNamespace(name="UR5", pid=0)
+    for joint_rad, said in ((0.0, "robot ready"), (0.1, "MOVING"), (0.2, "MOVING"), (0.2, "robot ready")):
+        state = SimpleNamespace(joints_rad=np.full(6, joint_rad))
+        arm.status = ArmStatus(state, False, "")
+        arm.changed.emit()
+        assert chip.text == said
+        window.desk.cell.changed.emit()
+        assert chip.text == said, "shown again for another reason"
