@@ -21,6 +21,7 @@ from core.errors import Cancelled, Remedy, SessionError
 from core.imagination.imagination import WORKER_MODULE
 from core.pipeline.pipeline import Pipeline
 from core.progress import Reporter
+from core.report.sentences import duration_text
 from core.workers import WorkerPool
 
 _PATIENCE_S = 1.5
@@ -153,9 +154,9 @@ class TerminalReporter(Reporter):
             return  # its last line has been printed
         self._last_line_s[stage] = float("inf") if is_done else now
         fraction = done / total if total else 1.0
-        left = (
-            f", about {(now - started) * (1 - fraction) / fraction:.0f} s left" if 0.02 < fraction < 1 else ""
-        )
+        left = ""
+        if 0.02 < fraction < 1:
+            left = f", about {duration_text((now - started) * (1 - fraction) / fraction)} left"
         print(f"{stage}: {100 * fraction:.0f} %{left}", file=sys.stderr, flush=True)
 
     def _on_interrupt(self) -> None:

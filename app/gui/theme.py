@@ -192,24 +192,28 @@ def style_sheet(theme: Theme) -> str:
     }}
     QPushButton:hover {{ border-color: {t.accent}; }}
     QPushButton:pressed {{ background: {t.line}; }}
-    QPushButton:focus {{ border: 1px solid {t.accent}; }}
+    QPushButton:focus {{ border: 2px solid {t.accent}; padding: 4px 11px; }}
     QPushButton:disabled {{ color: {t.muted}; background: {t.window}; }}
     QPushButton:checked {{ background: {t.accent}; color: {t.on_accent}; border-color: {t.accent}; }}
+    QPushButton:checked:focus {{ border-color: {t.text}; }}
     QPushButton[role="primary"] {{
         background: {t.accent}; color: {t.on_accent}; border-color: {t.accent}; font-weight: 600;
         padding: 8px 20px;
     }}
+    QPushButton[role="primary"]:focus {{ border: 2px solid {t.text}; padding: 7px 19px; }}
     QPushButton[role="primary"]:disabled {{
         background: {t.raised}; color: {t.muted}; border-color: {t.line};
     }}
     QPushButton[role="link"] {{
         background: transparent; border: none; color: {t.accent}; text-align: left; padding: 2px 0;
     }}
+    QPushButton[role="link"]:focus {{ text-decoration: underline; }}
     QPushButton[role="next"] {{
         background: transparent; color: {t.accent}; border: 2px solid {t.accent}; font-weight: 600;
         padding: 6px 16px;
     }}
     QPushButton[role="next"]:hover {{ background: {t.raised}; }}
+    QPushButton[role="next"]:focus {{ border-color: {t.text}; }}
     QLineEdit {{
         border: 1px solid {t.muted}; border-radius: 4px; padding: 3px 4px; background: {t.surface};
     }}

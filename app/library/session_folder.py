@@ -7,13 +7,15 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
+from core.errors import InputError
 from core.files import read_json, write_json
 from core.parameters import Parameters, difference, load_preset
-from core.session import explained
-from core.session.header import HEADER_FILE, has_records
+from core.session import Session, explained
+from core.session.header import HEADER_FILE, Header, has_records
 from core.session.operator_choice import CHOICE_FILE
 from core.session.pour_runs import EVENTS_FILE, OUTCOME_FILE, RUNS_FOLDER
 from core.session.record import RECORD_FILE
@@ -89,6 +91,26 @@ def _fact_of(path: Path) -> str:
     except OSError:
         return f"{path} missing"
     return f"{path} {found.st_mtime_ns} {found.st_size}"
+
+
+def rename_session(folder: Path, name: str) -> None:
+    """Call a session something else; its folder stays where it is.
+
+    Raises:
+        InputError: the name is empty.
+        SessionError: the folder is no session, or cannot be written.
+    """
+    if not name.strip():
+        raise InputError("A session needs a name; type one.")
+    created = Session.open(folder).created
+    with explained(folder):
+        Header(name.strip(), created).save(folder)
+
+
+def remove_if_empty(folder: Path) -> None:
+    """Remove a session that holds nothing: what was to be in it could not be made."""
+    if is_session(folder) and not has_records(folder) and not (folder / UNFINISHED_SCAN).exists():
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def remember_parameters(session: Path, preset: str, parameters: Parameters) -> None:

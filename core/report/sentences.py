@@ -54,8 +54,8 @@ def verdict_summary(
     verdict = verdict_words(is_open_container)
     if capacity_share is not None and capacity_threshold is not None:
         return (
-            f"{verdict}: it holds {percent(capacity_share)} of its convex hull; "
-            f"a container holds more than {percent(capacity_threshold)}."
+            f"{verdict}: hollow for {percent(capacity_share)} of its bulk "
+            f"(containers: over {percent(capacity_threshold)})."
         )
     return f"{verdict}: {percent(omega)} of the candies stayed; in a container more than " + (
         f"{percent(omega_threshold)} stay."
@@ -72,7 +72,9 @@ def verdict_reason(containability: Containability, n_on_top: int) -> str:
         said = omega_verdict_sentence(found)
         if found.is_open_container or not n_on_top:
             return said
-        return f"{said} {n_on_top} lie on top, with no wall around them."
+        none_stays = found.verdict.n_candies < 0.5
+        fate = "; none would stay when it is tilted" if none_stays else ", with no wall around them"
+        return f"{said} {n_on_top} lie on top{fate}."
     needed = f"More than {percent(found.omega_threshold)} of the candies have to stay inside;"
     if found.is_open_container:
         return f"{needed} {percent(found.omega)} did."
@@ -85,30 +87,25 @@ def verdict_reason(containability: Containability, n_on_top: int) -> str:
 
 def capacity_text(verdict: Verdict) -> str:
     """Say what an object holds for its size; of what is not a container also when that leaves it."""
-    needed = f"a container holds more than {100 * verdict.threshold:.0f}{_NO_BREAK}%"
+    needed = f"(containers: over {100 * verdict.threshold:.0f}{_NO_BREAK}%)"
+    hollow = f"hollow for {100 * verdict.capacity_share:.0f}{_NO_BREAK}% of its bulk {needed}"
     if verdict.n_candies < 0.5:
-        return f"it holds no candy; {needed} of its convex hull"
-    held = (
-        f"it holds {verdict.n_candies:.0f} candies ({verdict.volume_ml:.0f} ml), "
-        f"{100 * verdict.capacity_share:.0f}{_NO_BREAK}% of its convex hull; {needed}"
-    )
+        return hollow
+    held = f"it holds {verdict.n_candies:.0f} candies ({verdict.volume_ml:.0f} ml). {hollow.capitalize()}"
     if verdict.is_container or verdict.n_load == 0:
         return held
-    return f"{held}, and tilted by more than {degrees(verdict.holds_rad):.0f} degrees it loses candies"
+    return f"{held}; tilted by more than {degrees(verdict.holds_rad):.0f} degrees it loses candies"
 
 
 def omega_verdict_sentence(containability: Containability) -> str:
     """Give the verdict by Omega against its threshold (Sec. III-A), with these candies and this drop."""
     omega, threshold = omega_texts(containability)
     verdict = "an open container" if containability.exceeds_omega else "not an open container"
-    return (
-        f"By Omega {verdict}: {_stayed(containability)} of those dropped all over it "
-        f"(Omega {omega}, the threshold is {threshold})."
-    )
+    return f"By Omega {verdict}: {_stayed(containability)} (Omega {omega}, the threshold is {threshold})."
 
 
 def _stayed(containability: Containability) -> str:
-    return f"{containability.n_in} of {containability.n_drop} candies stayed"
+    return f"{containability.n_in} of {containability.n_drop} dropped candies stayed"
 
 
 def choice_sentence(grid: PourGrid, choice: PourChoice) -> str:
@@ -132,18 +129,13 @@ def pours_sentence(containability: Containability, grid: PourGrid | None, choice
 
 
 def tries_sentence(risk: PourRisk, i: int, j: int) -> str:
-    """Say how often a pour was tried, and how sure it is to spill nothing."""
+    """Say how likely a pour spills nothing (lower 95 % bound), and in how many trials it did not."""
     n, clean = int(risk.n_tries[i, j]), int(risk.n_clean[i, j])
     if n == 1:
-        return "Tried once, without set-up errors" + ("." if clean else f": {_spilled(risk, i, j)}.")
-    bound = f"{100 * risk.clean_at_least[i, j]:.0f}"
-    sure = f"so it spills nothing in at least {bound}{_NO_BREAK}% of pours (95{_NO_BREAK}% sure)"
-    if clean == n:
-        return f"Tried {n} times, with set-up errors: nothing was spilled, {sure}."
-    return (
-        f"Tried {n} times, with set-up errors: nothing was spilled in {clean} of them, "
-        f"{_spilled(risk, i, j)} on average, {sure}."
-    )
+        return "Tried once, without set-up errors" + ("." if clean else f": {_spilled(risk, i, j)} spilled.")
+    bound = f"{100 * risk.clean_at_least[i, j]:.0f}{_NO_BREAK}%"
+    said = f"Clean pour: at least {bound} likely ({clean} of {n} trials clean)"
+    return f"{said}." if clean == n else f"{said}; {_spilled(risk, i, j)} spilled on average."
 
 
 def risk_sentence(grid: PourGrid, risk: PourRisk, choice: PourChoice, paper: PourChoice) -> str:
@@ -211,6 +203,14 @@ def omega_texts(containability: Containability) -> tuple[str, str]:
 def direction_text(angle_rad: float) -> str:
     """Return a direction against the world's x-axis in whole degrees from 0 to 359."""
     return f"{round(degrees(angle_rad)) % 360}°"
+
+
+def duration_text(seconds: float) -> str:
+    """Return a time as people say it: 40 s, 14 min, 1 h 20 min."""
+    if seconds < 59.5:
+        return f"{max(round(seconds), 1)} s"
+    minutes = round(seconds / 60)
+    return f"{minutes} min" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
 
 
 def percent(share: float) -> str:

@@ -19,6 +19,7 @@ from app.jobs.host import Host
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
 from app.library.places import new_session_folder
+from app.library.session_folder import remember_parameters
 from core.errors import PoursightError
 
 if TYPE_CHECKING:
@@ -64,10 +65,21 @@ class Desk(QObject):
         self.jobs.failed.connect(lambda *_: self.workspace.refresh())
         self.cell.failed.connect(self.message)
         self.background.failed.connect(self.message)
+        self.workspace.edited.connect(self._remember_parameters)
 
     def new_session(self, name: str) -> bool:
-        """Open a new session in the usual place, named after today and `name`; False if that cannot be."""
-        return self.open_session(new_session_folder(name))
+        """Open a new session in the usual place, called `name`; False if that cannot be."""
+        if not self.open_session(new_session_folder(name)):
+            return False
+        self.rename_session(name)
+        return True
+
+    def rename_session(self, name: str) -> None:
+        """Call the open session something else; if that fails, `message` has the reason."""
+        try:
+            self.workspace.rename(name)
+        except PoursightError as error:
+            self.message.emit(worded(error))
 
     def open_session(self, folder: Path) -> bool:
         """Open a session, or start one in an empty folder; if that fails, `message` has the reason."""
@@ -88,6 +100,16 @@ class Desk(QObject):
         for number, host in enumerate(self._hosts):
             # One after the other: each is busy importing for a second or two.
             QTimer.singleShot(_APART_MS * number, self, partial(self._open, host))
+
+    def _remember_parameters(self) -> None:
+        """Keep an edit even if nothing is run with it."""
+        workspace = self.workspace
+        if workspace.session is not None and self.jobs.is_idle:  # a job has remembered those it runs with
+            store = partial(
+                remember_parameters, workspace.session.path, workspace.preset_name, workspace.parameters
+            )
+            remember = partial(self.background.run, "remember parameters", store, lambda _: None)
+            QTimer.singleShot(0, self, remember)
 
     def _open(self, host: Host[Any]) -> None:
         if not self._is_closed:

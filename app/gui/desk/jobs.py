@@ -12,6 +12,7 @@ from typing import Any, TypeVar
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from app.gui.remedies import remedy_words
+from app.gui.views.labels import with_view_numbers
 from app.jobs.host import Host
 from app.jobs.messages import Event, Failed, FailureKind, Finished, Message, Progressed, Status, Warned
 from app.jobs.service import Service
@@ -30,6 +31,7 @@ class RunningJob:
     Attributes:
         title: what it does, such as "Imagine".
         page: key of the page it belongs to.
+        done: what is said when it is done, such as "Scan checked."
         start_again: starts the same job once more; none where the arm must be checked first.
         host: the process that does it.
         patience_s: how long it may take to stop when cancelled.
@@ -40,6 +42,7 @@ class RunningJob:
 
     title: str
     page: str
+    done: str
     start_again: Callable[[], None] | None = field(repr=False)
     host: Host[Any] = field(repr=False)
     patience_s: float = 1.0
@@ -119,6 +122,7 @@ class Jobs(QObject):
         *arguments: Any,
         then: Callable[[Any], None] | None = None,
         patience_s: float = 1.0,
+        done: str = "",
     ) -> None:
         """Start a job; nothing happens while another one runs (its buttons are disabled then).
 
@@ -130,11 +134,16 @@ class Jobs(QObject):
             *arguments: for it.
             then: called with the result, after `finished`.
             patience_s: how long a cancelled job may take to stop before its process is killed.
+            done: what is said when it is done; else its title with "done".
         """
         if self.running is not None:
             return
-        again = partial(self.start, title, page, host, method, *arguments, then=then, patience_s=patience_s)
-        self.running = RunningJob(title, page, None if host in self._once_only else again, host, patience_s)
+        again = partial(
+            self.start, title, page, host, method, *arguments, then=then, patience_s=patience_s, done=done
+        )
+        said = done or self.tr("{title}: done.").format(title=title)
+        is_once_only = host in self._once_only
+        self.running = RunningJob(title, page, said, None if is_once_only else again, host, patience_s)
         self._then = then
         self._tick.start()
         self.started.emit(self.running)
@@ -170,7 +179,7 @@ class Jobs(QObject):
         if isinstance(message, Event):
             self.event_received.emit(message.payload)
         elif isinstance(message, Warned):
-            self.warned.emit(message.sentence)
+            self.warned.emit(with_view_numbers(message.sentence))
         elif self.running is None or self.running.host is not host:
             return  # the last message of a job that was killed
         elif isinstance(message, Progressed):
@@ -198,7 +207,8 @@ def _as_shown(job: RunningJob, failed: Failed) -> Failed:
     if job.is_cancelling and failed.kind is FailureKind.DIED:
         sentence = "Stopped on request; finished stages are kept."
         return replace(failed, kind=FailureKind.CANCELLED, sentence=sentence)
-    return replace(failed, sentence=f"{failed.sentence} {remedy_words(failed.remedy)}".rstrip())
+    said = f"{failed.sentence} {remedy_words(failed.remedy)}".rstrip()
+    return replace(failed, sentence=with_view_numbers(said))
 
 
 class Inbox(QObject):

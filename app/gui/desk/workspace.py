@@ -7,7 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
-from app.library.session_folder import remembered_parameters
+from app.library.session_folder import remembered_parameters, rename_session
 from app.operations.session import SessionTask
 from core.errors import InputError
 from core.parameters import Parameters, load_preset
@@ -20,8 +20,9 @@ from core.session.pour_runs import PourRun, pour_runs
 class Workspace(QObject):
     """The open session.
 
-    Signals: `session_changed` when another session was opened; `parameters_changed` when the parameters or
-    their preset are others; `stages_changed` when the freshness of a stage may have changed.
+    Signals: `session_changed` when another session was opened; `renamed` when it is called something else;
+    `parameters_changed` when the parameters or their preset are others; `edited` when somebody changed them;
+    `stages_changed` when the freshness of a stage may have changed.
 
     Attributes:
         session: the open one; none at first.
@@ -35,6 +36,8 @@ class Workspace(QObject):
     """
 
     session_changed = Signal()
+    renamed = Signal()
+    edited = Signal()
     parameters_changed = Signal()
     stages_changed = Signal()
 
@@ -53,6 +56,11 @@ class Workspace(QObject):
     def folder(self) -> Path | None:
         """Of the open session."""
         return self.session.path if self.session is not None else None
+
+    @property
+    def session_name(self) -> str:
+        """What the open session is called; empty without one."""
+        return self.session.name if self.session is not None else ""
 
     def open(self, folder: Path) -> None:
         """Open a session, or start one in a new or empty folder, with the parameters it was last used with.
@@ -74,6 +82,17 @@ class Workspace(QObject):
         self.undo_stack.clear()
         self.session_changed.emit()
         self.refresh()
+
+    def rename(self, name: str) -> None:
+        """Call the open session something else.
+
+        Raises:
+            PoursightError: the name is empty, or the folder cannot be written.
+        """
+        assert self.session is not None, "the open session"
+        rename_session(self.session.path, name)
+        self.session = Session.open(self.session.path)
+        self.renamed.emit()
 
     def task(self) -> SessionTask:
         """Return what a job needs; a session must be open."""
@@ -157,4 +176,5 @@ class _Edit(QUndoCommand):
 
     def _use(self, parameters: tuple[str, Parameters]) -> None:
         self._workspace._set(*parameters)
+        self._workspace.edited.emit()
         self._workspace.refresh()

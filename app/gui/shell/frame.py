@@ -32,10 +32,13 @@ from app.gui.desk.page_states import PageState
 from app.gui.pages.registry import TabFacts
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.state_mark import State, paint_mark, state_word
+from app.jobs.arm_events import ArmStatus
 
 STOP_KEYS = ("F12", "Pause")
 _STOP_KEY_CODES = (Qt.Key.Key_F12, Qt.Key.Key_Pause)
 _MARK_PX = 16
+_MOVED_RAD = 2e-4
+"""Between two reported states; an arm at rest stays within it."""
 _TABS_PX = 136
 
 
@@ -46,6 +49,8 @@ class TopBar(QFrame):
         super().__init__()
         self.setObjectName("top_bar")
         self._desk = desk
+        self._seen_status: ArmStatus | None = None
+        self._is_moving = False
         self._session = QLabel()
         self._session.setObjectName("session_name")
         self._session.setProperty("role", "title")
@@ -59,6 +64,7 @@ class TopBar(QFrame):
             row.addWidget(chip)
         row.addWidget(self.stop)
         desk.workspace.session_changed.connect(self._show_session)
+        desk.workspace.renamed.connect(self._show_session)
         jobs = desk.jobs
         for signal in (desk.cell.changed, desk.arm.changed, jobs.started, jobs.finished, jobs.failed):
             signal.connect(lambda *_: self._show_devices())
@@ -98,15 +104,30 @@ class TopBar(QFrame):
             )
 
     def _show_robot(self) -> None:
-        arm = self._desk.arm
+        arm, is_moving = self._desk.arm, self._sees_motion()
         if arm.connected is None:
             self._robot.show_text(self.tr("robot not connected"), state="empty")
         elif arm.status is None:
             self._robot.show_text(self.tr("robot connecting"), state="running")
         elif arm.status.problem:
             self._robot.show_text(self.tr("robot not ready"), state="failed", tip=arm.status.problem)
+        elif is_moving:
+            self._robot.show_text(self.tr("MOVING"), plate="attention", tip=arm.connected.name)
         else:
             self._robot.show_text(self.tr("robot ready"), state="fresh", tip=arm.connected.name)
+
+    def _sees_motion(self) -> bool:
+        """Whether the joints are elsewhere than in the state before; whatever moves them."""
+        status = self._desk.arm.status
+        if status is self._seen_status:
+            return self._is_moving  # called for another reason
+        before, self._seen_status = self._seen_status, status
+        states = [None if one is None else one.state for one in (before, status)]
+        self._is_moving = False
+        if states[0] is not None and states[1] is not None:
+            way_rad = abs(states[1].joints_rad - states[0].joints_rad).max()
+            self._is_moving = bool(way_rad > _MOVED_RAD)
+        return self._is_moving
 
     def _show_camera(self) -> None:
         job = self._desk.jobs.running

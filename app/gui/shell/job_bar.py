@@ -22,10 +22,10 @@ from app.gui.desk.page_states import PageState
 from app.gui.desk.stage_words import stage_words
 from app.gui.pages.registry import WORK
 from app.gui.theme import GRID_PX
-from app.gui.views.labels import duration_text
 from app.gui.views.progress_line import ProgressLine
 from app.gui.views.state_mark import State, StateMark
-from app.jobs.messages import Failed
+from app.jobs.messages import Failed, FailureKind
+from core.report.sentences import duration_text
 
 _BAR_PX, _LOG_PX, _DETAILS_PX = 44, 150, 160
 _MOST_LINES = 2000
@@ -64,7 +64,8 @@ class JobBar(QFrame):
         self._next = QPushButton()
         self._next.setObjectName("next")
         self._next.setProperty("role", "next")
-        self._next.clicked.connect(self._go_on)
+        self._next.setToolTip(self.tr("Ctrl+Enter"))
+        self._next.clicked.connect(self.go_on)
         row = QHBoxLayout(self)
         row.setContentsMargins(2 * GRID_PX, GRID_PX // 2, GRID_PX, GRID_PX // 2)
         row.setSpacing(2 * GRID_PX)
@@ -76,10 +77,8 @@ class JobBar(QFrame):
         row.addWidget(self._log)
         jobs.started.connect(self._show)
         jobs.progressed.connect(self._show)
-        jobs.finished.connect(lambda job, _: self._rest(self.tr("{title}: done.").format(title=job.title)))
-        jobs.failed.connect(
-            lambda job, _: self._rest(self.tr("{title}: did not finish.").format(title=job.title))
-        )
+        jobs.finished.connect(lambda job, _: self._rest(job.done))
+        jobs.failed.connect(self._end)
         self._rest(self.tr("Ready."))
 
     def toggle_log(self) -> None:
@@ -92,8 +91,9 @@ class JobBar(QFrame):
         self._next.setText("" if step is None else step.words)
         self._next.setVisible(step is not None and self._jobs.is_idle)
 
-    def _go_on(self) -> None:
-        if self._step is not None:
+    def go_on(self) -> None:
+        """Do what comes next, if it is offered."""
+        if self._step is not None and self._jobs.is_idle:
             self.next_wanted.emit(self._step.page)
 
     def _show(self, job: RunningJob) -> None:
@@ -113,6 +113,12 @@ class JobBar(QFrame):
         if job.seconds_left is None or job.is_cancelling:
             return share
         return self.tr("{share}, about {time} left").format(share=share, time=duration_text(job.seconds_left))
+
+    def _end(self, job: RunningJob, failed: Failed) -> None:
+        said = self.tr("{title}: did not finish.")
+        if failed.kind is FailureKind.CANCELLED:
+            said = self.tr("{title}: cancelled; what was finished is kept.")
+        self._rest(said.format(title=job.title))
 
     def _rest(self, text: str) -> None:
         self._text.setText(text)
@@ -252,7 +258,7 @@ class LogDrawer(QFrame):
         column.addWidget(self._text)
         self.setFixedHeight(_LOG_PX)
         jobs.started.connect(lambda job: self.add(self.tr("{title}: started.").format(title=job.title)))
-        jobs.finished.connect(lambda job, _: self.add(self.tr("{title}: done.").format(title=job.title)))
+        jobs.finished.connect(lambda job, _: self.add(job.done))
         jobs.failed.connect(self._failed)
         jobs.warned.connect(self.add)
         self.hide()

@@ -55,8 +55,8 @@ class Menus(QMenuBar):
         name, is_given = QInputDialog.getText(
             self._window, self.tr("New session"), self.tr("What will be scanned?"), text=self.tr("object")
         )
-        if is_given and name.strip():
-            self._desk.new_session(name.strip())
+        if is_given and name.strip() and self._desk.new_session(name.strip()):
+            self._window.show_page("scan")
 
     def open_session(self) -> None:
         """Ask for a session's folder and open it."""
@@ -95,6 +95,7 @@ class Menus(QMenuBar):
         for number, key in enumerate((*WORK, *OTHERS), 1):
             _add(menu, tab_facts(key).title, f"Ctrl+{number}", partial(self._window.show_page, key))
         menu.addSeparator()
+        _add(menu, self.tr("&Next step"), "Ctrl+Return", self._window.job_bar.go_on)
         _add(menu, self.tr("&Log"), "Ctrl+L", self._window.job_bar.toggle_log)
         themes = menu.addMenu(self.tr("&Theme"))
         group = QActionGroup(self)
@@ -167,6 +168,7 @@ class ShortcutOverview(QDialog):
         rows += [
             (self.tr("Play or pause a replay"), self.tr("Space")),
             (self.tr("Step in a replay, or to the next pour"), self.tr("Arrow keys")),
+            (self.tr("Press the button that has the focus"), self.tr("Enter or Space")),
             (self.tr("Hold to pour"), self.tr("Space or Enter, held")),
         ]
         grid = QGridLayout()

@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from PySide6.QtCore import QThread, QTimer, Signal
-from PySide6.QtGui import QCloseEvent, QGuiApplication
+from PySide6.QtGui import QCloseEvent, QGuiApplication, QKeyEvent
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
@@ -20,6 +20,7 @@ from app.gui.desk.page_states import page_states, with_failure
 from app.gui.pages.page import Page, SplitView
 from app.gui.pages.registry import OTHERS, WORK, import_page, make_page, tab_facts
 from app.gui.pages.welcome.page import WelcomePage
+from app.gui.shell.focus import FocusKeeper, press_by_enter
 from app.gui.shell.frame import TabList, TopBar
 from app.gui.shell.job_bar import JobBar, LogDrawer, MessageBar, next_step
 from app.jobs.arm_events import StopDone
@@ -79,6 +80,7 @@ class MainWindow(QMainWindow):
         self._stack.addWidget(self.welcome)
         self._preload = Preload(self)
         self._lay_out()
+        self._focus = FocusKeeper(self, self._stack.currentWidget)
         self._connect()
         self._show_states()
 
@@ -179,6 +181,11 @@ class MainWindow(QMainWindow):
         self.close()
 
     @override
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if not press_by_enter(event):
+            super().keyPressEvent(event)
+
+    @override
     def closeEvent(self, event: QCloseEvent) -> None:
         is_busy = not self.desk.jobs.is_idle
         if is_busy and self._asks_before_closing and not self._may_stop_work():
@@ -233,9 +240,12 @@ class MainWindow(QMainWindow):
         desk.page_wanted.connect(self.show_page)
         desk.message.connect(self._show_message)
         desk.workspace.session_changed.connect(self._on_session)
+        desk.workspace.renamed.connect(self._show_title)
         desk.workspace.stages_changed.connect(self._show_states)
         desk.jobs.started.connect(self._on_started)
         desk.jobs.failed.connect(self._on_failed)
+        for signal in (desk.jobs.finished, desk.jobs.failed):
+            signal.connect(lambda *_: QTimer.singleShot(0, self._focus.give_back))
         self.job_bar.log_wanted.connect(self.log.setVisible)
         self.job_bar.next_wanted.connect(self.go_on)
         self.top_bar.stop.pressed.connect(self.stop)
@@ -268,12 +278,16 @@ class MainWindow(QMainWindow):
         if folder is not None:
             self.memory.store_session(folder)
             self.desk.background.run("remember", partial(_remember, folder), lambda _: None)
-        self.setWindowTitle("Poursight" if folder is None else f"{folder.name} – Poursight")
+        self._show_title()
         self.messages.hide()
         if folder is None:
             self.show_page(WelcomePage.KEY)
         elif self.shown == WelcomePage.KEY:
             self.show_page("scan")
+
+    def _show_title(self) -> None:
+        session = self.desk.workspace.session
+        self.setWindowTitle("Poursight" if session is None else f"{session.name} – Poursight")
 
     def _on_started(self, _job: RunningJob) -> None:
         self._failed_page = None
@@ -281,15 +295,15 @@ class MainWindow(QMainWindow):
         self._show_states()
 
     def _on_failed(self, job: RunningJob, failed: Failed) -> None:
-        if failed.kind is not FailureKind.CANCELLED:
+        if failed.kind is not FailureKind.CANCELLED:  # whoever cancelled knows; the job bar says it
             self._failed_page = job.page
-        self.messages.say(
-            failed.sentence,
-            state="stale" if failed.kind is FailureKind.CANCELLED else "failed",
-            details=failed.details,
-            action=self.tr("Try again"),
-            do=job.start_again,
-        )
+            self.messages.say(
+                failed.sentence,
+                state="failed",
+                details=failed.details,
+                action=self.tr("Try again"),
+                do=job.start_again,
+            )
         self._show_states()
 
     def _show_states(self) -> None:
@@ -300,11 +314,11 @@ class MainWindow(QMainWindow):
         self._show_next()
 
     def _show_next(self) -> None:
+        """Offer the next step, but not on its own page: there the page's button says it."""
         workspace = self.desk.workspace
-        is_open = workspace.session is not None
-        self.job_bar.show_next(
-            next_step(self._states, workspace.is_container, self.shown) if is_open else None
-        )
+        step = next_step(self._states, workspace.is_container, self.shown)
+        is_offered = workspace.session is not None and step is not None and step.page != self.shown
+        self.job_bar.show_next(step if is_offered else None)
 
     def _restore_split(self, page: Page) -> None:
         split = page.findChild(SplitView)

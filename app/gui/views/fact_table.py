@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from PySide6.QtCore import (
+    QItemSelection,
     QModelIndex,
     QPersistentModelIndex,
     QPointF,
@@ -186,7 +187,8 @@ class FactTable(QTableView):
         header.setSortIndicator(-1, Qt.SortOrder.AscendingOrder)
         header.setSortIndicatorClearable(True)
         self.setSortingEnabled(True)
-        self.selectionModel().currentRowChanged.connect(self._emit_row)
+        # Not when a row becomes current: a table that gets the focus makes its first row current.
+        self.selectionModel().selectionChanged.connect(self._emit_row)
 
     @property
     def rows(self) -> tuple[Row, ...]:
@@ -261,9 +263,9 @@ class FactTable(QTableView):
             writer.writerow(["" if value is None else value for value in row.values])
         return out.getvalue()
 
-    def _emit_row(self, current: QModelIndex, _previous: QModelIndex) -> None:
-        if current.isValid():
-            self.row_selected.emit(self._sorted.mapToSource(current).row())
+    def _emit_row(self, selected: QItemSelection, _deselected: QItemSelection) -> None:
+        if selected.indexes():
+            self.row_selected.emit(self._sorted.mapToSource(selected.indexes()[0]).row())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Copy the table as CSV by Ctrl+C."""

@@ -35,7 +35,7 @@ class _Frame:
 
 
 class FootprintView(QWidget):
-    """Drop positions kept and lost, the object's outline, p_E and the principal axes; coordinates in mm."""
+    """Drop positions kept and lost, the object's outline, pour centre and principal axes; in mm."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -45,7 +45,7 @@ class FootprintView(QWidget):
         self.setToolTip(
             self.tr(
                 "Where the candies started, seen from above (base frame).\n"
-                "p_E is the mean of those that stayed; the lines are their principal axes,\n"
+                "The pour centre is the mean of those that stayed; the lines are their principal axes,\n"
                 "two standard deviations each way (paper, Sec. III-A)."
             )
         )
@@ -74,7 +74,7 @@ class FootprintView(QWidget):
         return QSize(200, 180)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Paint axes, object, candies and p_E."""
+        """Paint axes, object, candies and the pour centre."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(smaller(self.font()))
@@ -170,13 +170,14 @@ class FootprintView(QWidget):
         painter.setBrush(theme.color("text"))
         painter.drawEllipse(at, 5.5, 5.5)
         metrics = QFontMetricsF(painter.font())
-        box = QRectF(at.x() + 8, at.y() - metrics.height() - 3, metrics.horizontalAdvance("p_E") + 6, 0)
+        name = self.tr("Pour centre")
+        box = QRectF(at.x() + 8, at.y() - metrics.height() - 3, metrics.horizontalAdvance(name) + 6, 0)
         box.setHeight(metrics.height())
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(theme.color("surface"))
         painter.drawRoundedRect(box, 3, 3)
         painter.setPen(theme.color("text"))
-        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, "p_E")
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, name)
 
     def _paint_legend(self, painter: QPainter, area: QRectF, shown: FootprintPlan) -> None:
         theme = theme_of(self)

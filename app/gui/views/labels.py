@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtWidgets import QFrame, QLabel
 
@@ -38,12 +40,21 @@ def say(label: QLabel, text: str) -> None:
     label.setVisible(bool(text))
 
 
-def duration_text(seconds: float) -> str:
-    """Return a time as people say it: 40 s, 14 min, 1 h 20 min."""
-    translate = QCoreApplication.translate
-    if seconds < 59.5:
-        return translate("Duration", "{s} s").format(s=max(round(seconds), 1))
-    minutes = round(seconds / 60)
-    if minutes < 60:
-        return translate("Duration", "{min} min").format(min=minutes)
-    return translate("Duration", "{h} h {min} min").format(h=minutes // 60, min=minutes % 60)
+_FRAME = re.compile(r"(?<![/\\\w])(?:[Vv]iew )?frame-(\d+)(?!\.?\w|-)")
+"""A frame's name in a sentence; not as part of a path."""
+
+
+def view_number(frame: str) -> str:
+    """Return a view's number by its frame's name, 4 for `frame-000003`; the name if it has no number."""
+    digits = frame.rpartition("-")[2]
+    return str(int(digits) + 1) if digits.isdecimal() else frame  # people count from one
+
+
+def view_title(frame: str) -> str:
+    """Return what people call a view, by its frame's name."""
+    return QCoreApplication.translate("View", "View {number}").format(number=view_number(frame))
+
+
+def with_view_numbers(sentence: str) -> str:
+    """Return a sentence that names frames, with the views' numbers instead."""
+    return _FRAME.sub(lambda found: view_title(found[0]), sentence)

@@ -25,8 +25,8 @@ class MappedPour:
     Attributes:
         i: index of the direction.
         j: index of the distance.
-        theta_rad: direction from p_E to the pivot, from the base's x-axis.
-        indent_m: L_idt, distance of the pivot from p_E.
+        theta_rad: direction from the pour centre to the pivot, from the base's x-axis.
+        indent_m: L_idt, distance of the pivot from the pour centre.
         p: particle-in-object ratio P, 0..1, mean over the packings.
         spread: standard deviation of P over the packings; None with one packing.
         is_feasible: whether the arm can make it; None when that was not checked yet.
@@ -134,7 +134,7 @@ class PourMap(QWidget):
         cell = self._cells[i, j]
         lines = [
             self.tr("direction {deg:.0f}° from the base's x-axis").format(deg=degrees(cell.theta_rad)),
-            self.tr("pivot {mm:.1f} mm from p_E (L_idt)").format(mm=1000 * cell.indent_m),
+            self.tr("pivot {mm:.1f} mm from the pour centre (L_idt)").format(mm=1000 * cell.indent_m),
             self._describe_p(cell),
         ]
         if self._other is not None:
@@ -233,7 +233,7 @@ class PourMap(QWidget):
 
     def _legend(self) -> str:
         return self.tr(
-            "Each cell is a pour: its direction from p_E and its distance from it.\n"
+            "Each cell is a pour: its direction from the pour centre and its distance from it.\n"
             "The number is P in per cent: how many candies landed inside.\n"
             "The arc at the inner edge is the spread over the packings; a full one is 25 points or more.\n"
             "Hatched: the arm cannot make it. Star: chosen. Arrow keys move the selection."

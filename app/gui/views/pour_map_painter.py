@@ -171,7 +171,7 @@ class PourMapPainter(QPainter):
         self.strokePath(path, QPen(self._theme.color("text"), width))
 
     def paint_rim(self, rotation_deg: float, has_center: bool) -> None:
-        """Write the directions around, and p_E in the middle."""
+        """Write the directions around, and what the middle is."""
         self.setFont(smaller(self._font))
         metrics = QFontMetricsF(self.font())
         self.setPen(self._theme.color("muted"))
@@ -183,12 +183,13 @@ class PourMapPainter(QPainter):
             self.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
         if not has_center:
             return
-        box = QRectF(0, 0, 2 * self._layout.hole, metrics.height())
+        box = QRectF(0, 0, 2 * self._layout.hole, 2 * metrics.height())
         box.moveCenter(self._center)
-        self.drawText(box, Qt.AlignmentFlag.AlignCenter, "p_E")
+        name = QCoreApplication.translate("PourMap", "Pour\ncentre")
+        self.drawText(box, Qt.AlignmentFlag.AlignCenter, name)
 
     def paint_legend(self, indents_m: Sequence[float], other_label: str) -> None:
-        """Draw the colour scale, 0 to 100 %, and write how far the rings are from p_E."""
+        """Draw the colour scale, 0 to 100 %, and write how far the rings are from the middle."""
         top = self._size.height() - LEGEND_PX + 4
         self.setFont(smaller(self._font))
         metrics = QFontMetricsF(self.font())

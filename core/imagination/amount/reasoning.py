@@ -184,13 +184,13 @@ def _of_low_rim(rim_m: float, candy_m: float) -> str:
     """However few they are: a candy that stands on its edge, or rolls, leaves over a rim that low."""
     if rim_m >= candy_m:
         return ""
-    rim = "No rim is closed all around"
+    rim = "The rim has gaps"
     if rim_m > 0:
         rim = (
             f"At its lowest the rim is {1000 * rim_m:.0f} mm above the inner floor, less than a candy is "
             f"wide ({1000 * candy_m:.0f} mm)"
         )
-    return f"{rim}: single candies may leave there whatever their number."
+    return f"{rim}; a few candies may escape."
 
 
 def sure_candies(capacity: Capacity, parameters: Parameters) -> float:

@@ -195,7 +195,7 @@ def retention_sentence(retention: Retention) -> str:
         return f"Holds nothing: of {retention.n_asked} candies poured onto it none stays."
     most = degrees(retention.tilt_rad[-1])
     if isinf(retention.first_rad):
-        return f"Holds all of {n_load} {noun} up to {most:.0f} degrees, the largest tilt tried."
+        return f"Nothing falls out, even tilted {most:.0f} degrees."
     before = retention.holds_rad
     if n_load == 1:
         return f"Holds up to {degrees(before):.0f} degrees: then the only candy leaves."

@@ -16,32 +16,38 @@ from core.report import (
     verdict_summary,
     verdict_words,
 )
-from core.report.sentences import direction_text, percent
+from core.report.sentences import direction_text, duration_text, percent
 
 
 def test_verdict(tray: Containability, block: Containability) -> None:
     assert verdict_sentence(tray) == (
-        "Open container: 146 of 308 candies stayed (Omega 0.47, the threshold is 0.00)."
+        "Open container: 146 of 308 dropped candies stayed (Omega 0.47, the threshold is 0.00)."
     )
     assert verdict_sentence(block) == (
-        "Not an open container: 0 of 64 candies stayed (Omega 0.00, the threshold is 0.00)."
+        "Not an open container: 0 of 64 dropped candies stayed (Omega 0.00, the threshold is 0.00)."
     )
 
 
 def test_a_verdict_by_capacity_says_what_it_holds_and_the_papers_stands_beside(tray: Containability) -> None:
     holds = replace(tray, verdict=Verdict(0.634, 0.1, 137.2, 146.4, 24, 1.0))
     assert verdict_sentence(holds).replace("\u00a0", " ") == (
-        "Open container: it holds 137 candies (146 ml), 63 % of its convex hull; "
-        "a container holds more than 10 %."
+        "Open container: it holds 137 candies (146 ml). Hollow for 63 % of its bulk (containers: over 10 %)."
     )
-    assert omega_verdict_sentence(holds).startswith("By Omega an open container: 146 of 308")
+    assert omega_verdict_sentence(holds).startswith(
+        "By Omega an open container: 146 of 308 dropped candies stayed"
+    )
     lies_on = replace(tray, verdict=Verdict(0.034, 0.1, 47.0, 54.0, 23, 0.105))
     assert verdict_sentence(lies_on).replace("\u00a0", " ") == (
-        "Not an open container: it holds 47 candies (54 ml), 3 % of its convex hull; "
-        "a container holds more than 10 %, and tilted by more than 6 degrees it loses candies."
+        "Not an open container: it holds 47 candies (54 ml). "
+        "Hollow for 3 % of its bulk (containers: over 10 %); "
+        "tilted by more than 6 degrees it loses candies."
     )
     empty = replace(tray, verdict=Verdict(0.0, 0.1, 0.0, 0.0, 0, 0.0))
-    assert "it holds no candy; a container holds more than 10" in verdict_sentence(empty)
+    assert verdict_sentence(empty).replace("\u00a0", " ") == (
+        "Not an open container: hollow for 0 % of its bulk (containers: over 10 %)."
+    )
+    assert verdict_reason(empty, 5).endswith(" 5 lie on top; none would stay when it is tilted.")
+    assert verdict_reason(lies_on, 7).endswith(" 7 lie on top, with no wall around them.")
 
 
 def test_tries_say_how_sure_a_pour_is(pours: PourGrid, choice: PourChoice) -> None:
@@ -53,8 +59,8 @@ def test_tries_say_how_sure_a_pour_is(pours: PourGrid, choice: PourChoice) -> No
         "The largest P alone (the paper's choice) is there, too."
     )
     surest = tries_sentence(risk, choice.i, choice.j).replace("\u00a0", " ")
-    assert "nothing was spilled, so it spills nothing in at least 81 %" in surest
-    assert "in 1 of them, 2.0 of 60 candies on average" in tries_sentence(risk, 7, 2)
+    assert surest == "Clean pour: at least 81 % likely (13 of 13 trials clean)."
+    assert "(1 of 3 trials clean); 2.0 of 60 candies spilled on average." in tries_sentence(risk, 7, 2)
     assert tries_sentence(risk, 0, 0 if (choice.i, choice.j) != (0, 0) else 1).startswith("Tried once")
     other = replace(choice, i=7, j=2)
     assert "of whose 3 tries 1 spilled nothing" in risk_sentence(pours, risk, choice, other)
@@ -104,7 +110,7 @@ def test_the_verdict_in_two_or_three_words(verdict: bool | None, words: str) -> 
         ),
         (
             (False, 0.4, 0.034, 0.05, 0.1),
-            "Not a container: it holds 5 % of its convex hull; a container holds more than 10 %.",
+            "Not a container: hollow for 5 % of its bulk (containers: over 10 %).",
         ),
         ((None, None, None, None, None), "No verdict yet: nothing has been imagined."),
     ],
@@ -136,3 +142,18 @@ def test_where_omega_decides_the_reason_says_what_had_to_stay(
 )
 def test_per_cent_have_the_decimals_they_need(share: float, text: str) -> None:
     assert percent(share).replace("\u00a0", " ") == text
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [
+        (0.2, "1 s"),
+        (40.4, "40 s"),
+        (59.6, "1 min"),
+        (829, "14 min"),
+        (3580, "1 h 0 min"),
+        (4800, "1 h 20 min"),
+    ],
+)
+def test_durations_are_said_as_people_say_them(seconds: float, text: str) -> None:
+    assert duration_text(seconds) == text

@@ -20,6 +20,7 @@ from app.gui.pages.history.session_side import (
     SessionPart,
     TrashBox,
     ask_archive,
+    ask_name,
     ask_target,
     documents_folder,
 )
@@ -28,6 +29,7 @@ from app.gui.views.labels import say, text_label
 from app.jobs.library_work import LibraryWork
 from app.library.compare import Comparison, compare
 from app.library.index import send_to_trash
+from app.library.session_folder import rename_session
 from app.library.summary import SessionSummary
 
 
@@ -73,6 +75,7 @@ class HistoryPage(Page):
         self._comparison.left.connect(self._leave_comparison)
         self._session.export_wanted.connect(self._ask_target)
         self._session.compare_wanted.connect(self._compare_with_open)
+        self._session.rename_wanted.connect(self._ask_name)
         self._session.forget_wanted.connect(self._forget)
         self._session.trash_wanted.connect(self._ask_trash)
         self._trash.agreed.connect(self.delete)
@@ -237,6 +240,19 @@ class HistoryPage(Page):
             self.desk.page_wanted.emit(self.KEY)  # without a session the window goes to its first page
         trash = partial(send_to_trash, session.path)
         self.desk.background.run("history trash", trash, partial(self._on_deleted, session))
+
+    def rename(self, folder: Path, name: str) -> None:
+        """Call a session something else."""
+        if folder == self.desk.workspace.folder:
+            self.desk.rename_session(name)
+            self._shelf.refresh()
+        else:
+            rename = partial(rename_session, folder, name)
+            self.desk.background.run("history rename", rename, lambda _: self._shelf.refresh())
+
+    def _ask_name(self) -> None:
+        session = self.selected[0]
+        ask_name(self, session.name, partial(self.rename, session.path))
 
     def _compare_with_open(self) -> None:
         folder, selected = self.desk.workspace.folder, self.selected

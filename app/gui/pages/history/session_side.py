@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QFormLayout,
     QHBoxLayout,
+    QInputDialog,
     QLabel,
     QPushButton,
     QSizePolicy,
@@ -93,6 +94,18 @@ def _open(dialog: QFileDialog, then: Callable[[Path], None]) -> None:
     dialog.open()
 
 
+def ask_name(parent: QWidget, name: str, then: Callable[[str], None]) -> None:
+    """Ask what a session is to be called; nothing happens if the dialog is cancelled."""
+    dialog = QInputDialog(parent)
+    dialog.setObjectName("rename_dialog")
+    dialog.setWindowTitle(QCoreApplication.translate("History", "Rename the session"))
+    dialog.setLabelText(QCoreApplication.translate("History", "Name"))
+    dialog.setTextValue(name)
+    dialog.textValueSelected.connect(then)
+    dialog.finished.connect(dialog.deleteLater)
+    dialog.open()
+
+
 def open_folder(folder: Path) -> None:
     """Show a folder in the file manager."""
     QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
@@ -101,12 +114,13 @@ def open_folder(folder: Path) -> None:
 class SessionPart(QWidget):
     """Facts and buttons of one session.
 
-    Signals: `export_wanted` with an `ExportKind`; `compare_wanted`, `forget_wanted` and `trash_wanted` when
-    their buttons are pressed.
+    Signals: `export_wanted` with an `ExportKind`; `compare_wanted`, `rename_wanted`, `forget_wanted` and
+    `trash_wanted` when their buttons are pressed.
     """
 
     export_wanted = Signal(object)
     compare_wanted = Signal()
+    rename_wanted = Signal()
     forget_wanted = Signal()
     trash_wanted = Signal()
 
@@ -181,7 +195,9 @@ class SessionPart(QWidget):
         self._forget.clicked.connect(self.forget_wanted)
         self._trash = _button("trash", self.tr("Delete…"), self.tr("Move the session to the trash"))
         self._trash.clicked.connect(self.trash_wanted)
-        return row_of(show, self._forget, self._trash)
+        self._rename = _button("rename", self.tr("Rename…"), self.tr("Its folder keeps its name"))
+        self._rename.clicked.connect(self.rename_wanted)
+        return row_of(show, self._rename, self._forget, self._trash)
 
     def show_session(
         self, session: SessionSummary, *, is_elsewhere: bool, can_compare: bool, is_idle: bool
@@ -210,6 +226,7 @@ class SessionPart(QWidget):
         for key, text in facts.items():
             self._facts[key].setText(text)
             self._form.setRowVisible(self._facts[key], bool(text))
+        self._rename.setEnabled(is_idle and not session.problem)
         for kind, button in self._exports.items():
             is_there = "containability" in session.stages or not kind.needs_report
             button.setEnabled(is_idle and is_there and not session.problem)

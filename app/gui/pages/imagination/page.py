@@ -15,7 +15,7 @@ from app.gui.desk.jobs import RunningJob
 from app.gui.pages.background_page import BackgroundPage
 from app.gui.pages.fact_grid import Fact, FactGrid
 from app.gui.pages.imagination.drop import DropKey, ShownDrop, key_of, load
-from app.gui.pages.imagination.view import DropReplay, PicturesPart
+from app.gui.pages.imagination.view import DropReplay, PicturesPart, phase_title
 from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.page import SidePanel, SplitView
 from app.gui.pages.parameters_part import ParametersPart, n_different
@@ -29,7 +29,7 @@ from app.jobs.session_work import PictureDrawn, SessionWork
 from core.imagination.retention.result import Retention, retention_sentence
 from core.pipeline.session_view import IMAGINED
 from core.report.plot_geometry import FootprintPlan
-from core.report.sentences import verdict_reason, verdict_sentence
+from core.report.sentences import duration_text, verdict_reason, verdict_sentence
 from core.stages import MESH, groups_of, stages_before
 
 MM = 1000.0
@@ -320,16 +320,15 @@ class VerdictSide(SidePanel):
         )
 
     def _drop_facts(self, drop: ShownDrop) -> list[Fact]:
-        arrow = " \N{RIGHTWARDS ARROW} "
         dropped = self.tr("{n} candies, {width:.1f} mm wide").format(
             n=drop.containability.n_drop, width=drop.particle.diameter_m * MM
         )
         return [
             Fact(self.tr("Dropped"), dropped, self.tr("How many candies were dropped, and their diameter")),
             Fact(
-                self.tr("Inside"),
-                arrow.join(str(phase.n_inside) for phase in drop.phases),
-                self.tr("Candies in the object's bounding box after drop / tilt x / tilt y / push"),
+                self.tr("Inside after"),
+                " / ".join(f"{phase_title(phase.key)} {phase.n_inside}" for phase in drop.phases),
+                self.tr("Candies in the object's bounding box after each phase of the drop"),
             ),
             Fact(
                 self.tr("Seed"),
@@ -338,7 +337,7 @@ class VerdictSide(SidePanel):
             ),
             Fact(
                 self.tr("Took"),
-                self.tr("{s:.1f} s").format(s=drop.seconds),
+                duration_text(drop.seconds),
                 self.tr("Computing time of the drop"),
             ),
         ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QEvent, Qt, QUrl, Signal
+from PySide6.QtCore import QCoreApplication, QEvent, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 from typing_extensions import override
@@ -80,7 +80,7 @@ class DropReplay(QWidget):
             self.timeline.set_sections(0.0)
         else:
             self._fill(drop)
-            sections = [Section(self._title(phase.key), phase.begin_s, phase.end_s) for phase in drop.phases]
+            sections = [Section(phase_title(phase.key), phase.begin_s, phase.end_s) for phase in drop.phases]
             self.timeline.set_sections(drop.moments.duration_s, sections)
             self.timeline.set_time(drop.moments.duration_s)
             if is_first:
@@ -110,15 +110,6 @@ class DropReplay(QWidget):
         self.scene.set_candy_positions("candies", drop.moments.positions_m(time_s))
         self.scene.set_pose("object", drop.moments.T_world_body(time_s))
         self._now.setText(self._words(drop, time_s))
-
-    def _title(self, key: PhaseKey) -> str:
-        titles: dict[PhaseKey, str] = {
-            "drop": self.tr("drop"),
-            "tilt_x": self.tr("tilt x"),
-            "tilt_y": self.tr("tilt y"),
-            "push": self.tr("push"),
-        }
-        return titles[key]
 
     def _words(self, drop: ShownDrop, time_s: float) -> str:
         """What happens at a time."""
@@ -152,6 +143,18 @@ class DropReplay(QWidget):
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self._show_legend()
+
+
+def phase_title(key: PhaseKey) -> str:
+    """Return a phase's name."""
+    translate = QCoreApplication.translate
+    titles: dict[PhaseKey, str] = {
+        "drop": translate("Phase", "drop"),
+        "tilt_x": translate("Phase", "tilt x"),
+        "tilt_y": translate("Phase", "tilt y"),
+        "push": translate("Phase", "push"),
+    }
+    return titles[key]
 
 
 def _rectangle_m(drop_positions_m: FloatArray) -> FloatArray:

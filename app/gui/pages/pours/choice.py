@@ -19,9 +19,11 @@ from core.report import (
     tries_sentence,
     verdict_sentence,
 )
-from core.report.sentences import NO_POURS, direction_text, ratio_text
+from core.report.sentences import NO_POURS, direction_text, duration_text, ratio_text
 
 MM = 1000.0
+SURE_ENOUGH = 0.8
+"""Below this chance that nothing is spilled (lower 95 % bound), the heading carries a warning."""
 
 
 class ChoiceBox(QWidget):
@@ -43,13 +45,14 @@ class ChoiceBox(QWidget):
         self._selection: tuple[int, int] | None = None
         self._is_open = False
         self._verdict = text_label("chosen_pour", "verdict")
+        self._warning = text_label("pour_warning", "attention")
         self.stale = StaleNote(("reconstruction", "collision", *IMAGINED))
         self._why = text_label("chosen_why")
         self._form = QWidget()
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(GRID_PX)
-        for widget in (self._verdict, self.stale, self._why, self._form):
+        for widget in (self._verdict, self._warning, self.stale, self._why, self._form):
             column.addWidget(widget)
         self._build_form()
 
@@ -101,6 +104,7 @@ class ChoiceBox(QWidget):
         """Show a choice, or none; `remark` says why there is none."""
         self._pours = pours
         say(self._verdict, self.tr("No pours yet.") if pours is None else chosen_sentence(pours))
+        say(self._warning, "" if pours is None else risk_warning(pours))
         say(self._why, remark if pours is None else "\n\n".join(why_sentences(pours)))
         self._form.setVisible(pours is not None and pours.grid is not None)
         self._update()
@@ -207,6 +211,15 @@ def chosen_sentence(pours: ShownPours) -> str:
     )
 
 
+def risk_warning(pours: ShownPours) -> str:
+    """Say that the chosen pour is not sure enough to spill nothing; empty if it is, or nobody knows."""
+    if pours.chosen is None or pours.risk is None:
+        return ""
+    clean = float(pours.risk.clean_at_least[pours.chosen])
+    said = _tr("\N{WARNING SIGN} A clean pour is only {percent:.0f}\N{NO-BREAK SPACE}% sure.")
+    return "" if clean >= SURE_ENOUGH else said.format(percent=100 * clean)
+
+
 def why_sentences(pours: ShownPours) -> list[str]:
     """Say why this one: a person, the arm, the trials, or the paper's rule with its numbers."""
     grid = pours.grid
@@ -247,8 +260,8 @@ def feasibility_sentence(pours: ShownPours, i: int, j: int) -> str:
         return _tr("Not checked with this cell's arm since the pours were imagined.")
     if not found.is_feasible:
         return _tr("The arm cannot make it: {reason}").format(reason=found.reason)
-    return _tr("The arm can make it in {seconds:.0f} s, with {mm:.0f} mm clearance.").format(
-        seconds=found.duration_s, mm=MM * found.clearance_m
+    return _tr("The arm can make it in {time}, with {mm:.0f} mm clearance.").format(
+        time=duration_text(found.duration_s), mm=MM * found.clearance_m
     )
 
 

@@ -323,7 +323,7 @@ class PourScene(QWidget):
         )
         footprint = pours.containability.footprint
         if footprint is not None:
-            self.scene.set_label(CENTER, footprint.center_m, self.tr("pour centre"))
+            self.scene.set_label(CENTER, footprint.center_m, self.tr("Pour centre"))
         self.scene.fit(BODY, AROUND)
 
     def show_pour(self, i: int, j: int) -> None:

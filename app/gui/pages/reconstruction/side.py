@@ -18,7 +18,7 @@ from app.gui.pages.scan_verdict import verdict_reasons, verdict_title
 from app.gui.pages.staleness import StaleNote
 from app.gui.theme import GRID_PX
 from app.gui.views.fact_table import Column, FactTable, Row
-from app.gui.views.labels import text_label
+from app.gui.views.labels import text_label, view_number, with_view_numbers
 from core.geometry import FloatArray
 from core.stages import groups_of
 
@@ -126,8 +126,7 @@ class ModelSide(SidePanel):
         if model.quality is None:
             said = self.tr("The scan was not checked with this model yet: press Reconstruct.")
             return self.tr("Scan not checked"), said
-        names = [view.name for view in model.quality.views]
-        return verdict_title(model.quality), "\n".join(verdict_reasons(model.quality, names))
+        return verdict_title(model.quality), "\n".join(verdict_reasons(model.quality))
 
     def _make_facts(
         self, model: ShownModel, before: ShownModel | None, difference_m: FloatArray | None
@@ -194,20 +193,20 @@ def _rows(model: ShownModel) -> list[Row]:
         return []
     refinement = model.reconstruction.refinement
     moved_m = {} if refinement is None else {view.name: view.shift_m for view in refinement.views}
-    return [_row(k + 1, view, moved_m.get(view.name)) for k, view in enumerate(model.quality.views)]
+    return [_row(view, moved_m.get(view.name)) for view in model.quality.views]
 
 
-def _row(number: int, view: ViewQuality, moved_m: float | None) -> Row:
+def _row(view: ViewQuality, moved_m: float | None) -> Row:
     tilt_rad = view.table_tilt_rad
     return Row(
         (
-            str(number),
+            view_number(view.name),
             _without_minus_zero(_scaled(view.table_offset_m)),
             None if tilt_rad is None else degrees(tilt_rad),
             _scaled(view.residual_median_m),
             _scaled(moved_m),
         ),
-        tooltip="\n".join(view.problems),
+        tooltip="\n".join(map(with_view_numbers, view.problems)),
         needs_attention=bool(view.problems),
     )
 

@@ -16,6 +16,7 @@ from app.gui.views.labels import say, text_label
 from app.gui.views.painting import tabular
 from app.jobs.arm_events import MoveProgress, PlannedPour
 from core.motion.pour.plan import Segment
+from core.report.sentences import duration_text
 from core.session.cups import Cup
 
 if TYPE_CHECKING:
@@ -262,11 +263,6 @@ class LivePanel(Panel):
         say(self._pivot, "" if off_m is None else said.format(mm=off_m * _MM))
 
 
-def duration_text(seconds: float) -> str:
-    """Return a duration: seconds below two minutes, then minutes."""
-    return f"{max(round(seconds), 0)} s" if seconds < 120 else f"{round(seconds / 60)} min"
-
-
 def plan_facts(plan: PourPlan) -> list[Fact]:
     """Return what a person wants to know of a plan before it is carried out."""
     tr = partial(QCoreApplication.translate, "PlanFacts")
@@ -277,7 +273,7 @@ def plan_facts(plan: PourPlan) -> list[Fact]:
     return [
         Fact(
             tr("Duration"),
-            tr("{n} moves, {seconds:.0f} s").format(n=len(plan.moves), seconds=plan.duration_s),
+            tr("{n} moves, {time}").format(n=len(plan.moves), time=duration_text(plan.duration_s)),
             tr("How long the arm moves, without the gripper's own time; from the plan"),
             is_wide=True,
         ),

@@ -93,6 +93,8 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             self.desk.message.emit(self.failure)
         if self.content is not None and not self._work.is_scanning:
             self._show_contents(self.content, is_first=former is None)
+            if former is None and self.content.source == "nothing" and self.folder is not None:
+                self.side.choice.choose_by_words(self.desk.workspace.session_name)
         self.update_actions()
         self._press_when_requested()
 
@@ -248,8 +250,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             desk.message.emit(self.tr("Wait until the running job has ended, or cancel it; then import."))
             return
         is_empty = self.folder is not None and contents is not None and contents.source == "nothing"
-        if is_empty or desk.new_session(path.name if path.is_dir() else path.stem):
-            self._work.import_path(path)
+        self._work.import_path(path, into_open=is_empty)
 
     def _take_proposal(self, proposal: Proposal) -> None:
         self._proposal = proposal

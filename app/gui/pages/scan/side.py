@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -226,6 +227,14 @@ class ObjectChoice(QWidget):
         with QSignalBlocker(self._combo):
             self._combo.setCurrentIndex(index)
         self.changed.emit()
+
+    def choose_by_words(self, words: str) -> None:
+        """Choose the built-in object that some words name, such as `block` in "wood block", if any."""
+        said = re.findall(r"[^\W_]+", words.casefold())
+        for index in range(self._combo.count()):
+            name = self._combo.itemData(index)
+            if isinstance(name, str) and name in said:
+                self.choose(name)
 
     def forget_clearance(self) -> None:
         """Before each scan of a real cell, ask again whether the area is clear."""

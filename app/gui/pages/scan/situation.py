@@ -235,7 +235,7 @@ def _checked(contents: ScanContents, now: Situation) -> Verdict:
     if contents.pose_error_m is not None:
         error_mm = 1000 * contents.pose_error_m
         headline += translate("ScanPage", ", pose error about {error:.1f} mm").format(error=error_mm)
-    details = verdict_reasons(quality, [view.name for view in contents.views])
+    details = verdict_reasons(quality)
     states: dict[str, State] = {"good": "fresh", "usable": "stale", "scan again": "failed"}
     state = states.get(quality.verdict, "stale")
     if now.is_stale and now.is_checking:

@@ -13,8 +13,8 @@ from PySide6.QtGui import QImage
 from app.gui.desk.background import Background
 from app.gui.pages.scan.loading import Picture, ScanContents, load_images
 from app.gui.pages.scan.side import ScanSide
-from app.gui.pages.scan_verdict import view_title
 from app.gui.remedies import worded
+from app.gui.views.labels import view_number, view_title
 from app.gui.views.thumbnails import Thumbnail
 from app.jobs.scan_events import ViewDone, ViewProgress, ViewsPlanned
 from core.errors import PoursightError
@@ -96,8 +96,8 @@ class ViewTable:
         picture: QImage | Path | None = self._live.get(view.name)
         if picture is None and (known := self._pictures.get(view.name)) is not None:
             picture = self._file(known)
-        tooltip = "\n".join(text for text in (_headline(index, view), _problems(view)) if text)
-        return Thumbnail(view.name, str(index + 1), view.state, picture, tooltip)
+        tooltip = "\n".join(text for text in (_headline(view), _problems(view)) if text)
+        return Thumbnail(view.name, view_number(view.name), view.state, picture, tooltip)
 
     def thumbnails(self) -> list[Thumbnail]:
         """Return all views as the grid shows them."""
@@ -160,7 +160,7 @@ class ShownImages:
 
     def _describe(self, index: int) -> None:
         view = self._views.views[index]
-        self._side.caption(_headline(index, view))
+        self._side.caption(_headline(view))
         self._side.show_problems(_problems(view))
 
     def _show(self, images: Images | None) -> None:
@@ -181,7 +181,7 @@ def _thumbnail(color: npt.NDArray[np.uint8]) -> QImage:
     return QImage(small.tobytes(), width, height, 3 * width, QImage.Format.Format_RGB888).copy()
 
 
-def _headline(index: int, view: ViewProgress) -> str:
+def _headline(view: ViewProgress) -> str:
     """Say what became of a view."""
     translate = QCoreApplication.translate
     states = {
@@ -190,7 +190,7 @@ def _headline(index: int, view: ViewProgress) -> str:
         "poor": translate("ScanViews", "taken, but poor"),
         "failed": translate("ScanViews", "left out"),
     }
-    return f"{view_title(index)}: {states[view.state]}"
+    return f"{view_title(view.name)}: {states[view.state]}"
 
 
 def _problems(view: ViewProgress) -> str:

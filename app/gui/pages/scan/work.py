@@ -14,8 +14,11 @@ from app.gui.desk.jobs import RunningJob
 from app.gui.pages.scan.loading import FRAMES, load_hidden_area
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
-from app.library.session_folder import UNFINISHED_SCAN
+from app.library.places import new_session_folder
+from app.library.session_folder import UNFINISHED_SCAN, remove_if_empty
 from app.operations.scanning import ScanRequest
+from app.operations.session import SessionTask
+from core.parameters import Parameters
 
 HIDDEN_AREA_M2 = 2e-4
 """Less than this of the inside is not worth further views; the scan's verdict uses the same limit."""
@@ -38,6 +41,8 @@ class ScanJobs(QObject):
         self._page = page
         self._scan: RunningJob | None = None
         self._folder: Path | None = None
+        self._new: Path | None = None
+        desk.jobs.failed.connect(self._clear_up)
 
     @property
     def is_scanning(self) -> bool:
@@ -75,7 +80,12 @@ class ScanJobs(QObject):
 
     def check(self) -> None:
         """Reconstruct and check the scan, and find further views if something was hidden."""
-        self._start(self.tr("Check the scan"), SessionWork.reconstruct, then=self._look_for_hidden)
+        self._start(
+            self.tr("Check the scan"),
+            SessionWork.reconstruct,
+            then=self._look_for_hidden,
+            done=self.tr("Scan checked."),
+        )
 
     def propose(self) -> None:
         """Find views that show what is hidden."""
@@ -83,12 +93,35 @@ class ScanJobs(QObject):
         if cell is not None:
             self._start(self.tr("Find further views"), ScanWork.propose, cell, then=self.proposed.emit)
 
-    def import_path(self, path: Path) -> None:
-        """Take over a folder of views, which the import checks, or a mesh."""
-        if path.is_dir():
-            self._start(self.tr("Import the scan"), SessionWork.import_scan, path)
-        else:
-            self._start(self.tr("Import the mesh"), SessionWork.import_mesh, path)
+    def import_path(self, path: Path, *, into_open: bool) -> None:
+        """Take over a folder of views, which the import checks, or a mesh.
+
+        Args:
+            path: of the folder or mesh.
+            into_open: whether the open session takes it; else a new one, which is opened once it holds it:
+                an import that fails leaves none.
+        """
+        is_scan = path.is_dir()
+        title = self.tr("Import the scan") if is_scan else self.tr("Import the mesh")
+        method: Callable[..., None] = SessionWork.import_scan if is_scan else SessionWork.import_mesh
+        if into_open:
+            self._start(title, method, path)
+            return
+        desk, name = self._desk, path.name if path.is_dir() else path.stem
+        folder = self._folder = self._new = new_session_folder(name)
+        task = SessionTask(folder, Parameters(), "default")
+
+        def open_it(_: object) -> None:
+            if desk.open_session(folder):
+                desk.rename_session(name)
+
+        desk.jobs.start(title, self._page, desk.session_host, method, task, path, then=open_it)
+
+    def _clear_up(self, *_: object) -> None:
+        """The session of an import that failed holds nothing."""
+        folder, self._new = self._new, None
+        if folder is not None:
+            self._desk.background.run("scan.clear up", partial(remove_if_empty, folder), lambda _: None)
 
     def pause(self) -> None:
         """Stop the arm after the current view."""
@@ -110,12 +143,15 @@ class ScanJobs(QObject):
         *arguments: object,
         then: Callable[[object], None] | None = None,
         patience_s: float = 1.0,
+        done: str = "",
     ) -> None:
         desk = self._desk
         host = desk.scan_host if method in (ScanWork.scan, ScanWork.propose) else desk.session_host
         task = desk.workspace.task()
         self._folder = task.folder
-        desk.jobs.start(title, self._page, host, method, task, *arguments, then=then, patience_s=patience_s)
+        desk.jobs.start(
+            title, self._page, host, method, task, *arguments, then=then, patience_s=patience_s, done=done
+        )
 
     def _scan_again(self, source: str | None, request: ScanRequest) -> None:
         """After a failure: what was taken since the scan began is used."""

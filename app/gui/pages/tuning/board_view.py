@@ -32,6 +32,7 @@ from app.operations.tuning_board import Board, ParameterSet
 from core.evaluation.labels import LABELS, LabelledObject
 from core.evaluation.verdicts import ObjectVerdict, is_right
 from core.parameters import Parameters
+from core.report.sentences import duration_text
 
 CELL_ROLE = Qt.ItemDataRole.UserRole
 _SET_PX, _BAR_PX, _SETS_PX = 136, 5, 176
@@ -220,16 +221,16 @@ class ObjectTable(QTreeWidget):
             said = self.tr("{n_in} of {n_drop} candies stayed; the threshold is {threshold:.3g}.")
         else:
             said = self.tr(
-                "Candies fill {share:.1f} % of its convex hull; the threshold is {threshold:.3g}. "
+                "Hollow for {share:.1f} % of its bulk; the threshold is {threshold:.3g}. "
                 "{n_in} of {n_drop} dropped candies stayed."
             )
         flip = self.tr("⇄ The verdict differs from that of the set before.") if is_flipped else ""
-        return " ".join(filter(None, (said, self.tr("It took {seconds:.1f} s."), flip))).format(
+        return " ".join(filter(None, (said, self.tr("It took {time}."), flip))).format(
             n_in=verdict.n_in,
             n_drop=verdict.n_drop,
             share=100 * verdict.score,
             threshold=each.threshold,
-            seconds=verdict.seconds,
+            time=duration_text(verdict.seconds),
         )
 
 

@@ -23,7 +23,7 @@ def measure_meaning(measure: Measure) -> str:
     """Say what a measure is."""
     if measure == "Omega":
         return _tr("Omega: share of the candies that stayed.")
-    return _tr("Capacity share: how much of its convex hull candies can fill.")
+    return _tr("Capacity share: how much of its bulk is hollow, so that candies stay in it.")
 
 
 def differences_text(parameters: Parameters, base: Parameters) -> str:

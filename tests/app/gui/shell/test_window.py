@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import psutil
 import pytest
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, Qt, QTimer
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QLabel, QMessageBox, QPushButton
+from PySide6.QtWidgets import QInputDialog, QLabel, QMenu, QMessageBox, QPushButton, QWidget
 
 from app.gui.desk.memory import Memory
 from app.gui.pages.page import SplitView
+from app.gui.pages.registry import OTHERS, WORK
 from app.gui.shell.frame import Chip, Tab
 from app.gui.shell.job_bar import MessageBar
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
 from app.gui.theme import DARK, LIGHT, apply_theme, theme_of
+from app.jobs.arm_events import ArmStatus
 from app.jobs.messages import FailureKind
 from app.jobs.session_work import SessionWork
+from app.library.session_folder import remembered_parameters
 from tests.awake import within
 
 
@@ -170,3 +176,121 @@ def test_the_overview_lists_every_key_of_the_menus(window):
     texts = {label.text() for label in overview.findChildren(QLabel)}
     assert set(keys) <= texts
     assert "F12, Pause" in texts
+
+
+def test_whoever_cancels_a_job_sees_no_banner(window, mug_session, qtbot):
+    window.desk.open_session(mug_session)
+    desk, height = window.desk, window.page("scan").height()
+    with qtbot.waitSignal(desk.jobs.started):
+        desk.workspace.edit(desk.workspace.parameters.model_copy(update={"seed": 5}), "seed")
+        desk.jobs.start(
+            "Imagine", "imagination", desk.session_host, SessionWork.imagine, desk.workspace.task()
+        )
+    with qtbot.waitSignal(desk.jobs.failed):
+        qtbot.mouseClick(_button(window, "cancel"), Qt.MouseButton.LeftButton)
+    assert window.messages.sentence == ""
+    assert window.findChild(QLabel, "job_text").text() == "Imagine: cancelled; what was finished is kept."
+    assert window.page("scan").height() == height
+
+
+def test_next_leads_to_another_page_or_is_not_there(window, mug_session, qtbot):
+    window.setMenuBar(Menus(window))
+    window.desk.open_session(mug_session)
+    window.show_page("imagination")
+    assert _button(window, "next").text() == "Next: review the pours"
+    next_step = next(
+        action
+        for menu in window.menuBar().findChildren(QMenu)
+        for action in menu.actions()
+        if action.shortcut().toString() == "Ctrl+Return"
+    )
+    next_step.trigger()
+    assert window.shown == "pours"
+    assert _button(window, "next").text() == "Next: let the arm pour"
+    window.show_page("robot")
+    assert _button(window, "next").isHidden()
+
+
+def test_enter_presses_the_button_that_has_the_focus(window, qtbot):
+    window.activateWindow()
+    window.show_page("history")
+    tab = window.findChild(Tab, "tab_scan")
+    tab.setFocus()
+    qtbot.keyClick(tab, Qt.Key.Key_Return)
+    assert window.shown == "scan"
+    log = _button(window, "log_toggle")
+    log.setFocus()
+    qtbot.keyClick(log, Qt.Key.Key_Enter)
+    assert window.log.isVisible()
+
+
+def test_the_focus_stays_when_its_button_goes_and_returns_with_it(window, mug_session, qtbot):
+    window.activateWindow()
+    window.desk.open_session(mug_session)
+    window.show_page("imagination")
+    qtbot.waitUntil(lambda: window.desk.background.is_idle)
+    desk, page = window.desk, window.page("imagination")
+    desk.workspace.edit(desk.workspace.parameters.model_copy(update={"seed": 5}), "seed")
+    primary = page.findChild(QPushButton, "primary")
+    primary.setFocus()
+    qtbot.keyClick(primary, Qt.Key.Key_Return)
+    assert not desk.jobs.is_idle
+    assert not primary.isEnabled()
+    assert page.hasFocus()
+    with qtbot.waitSignal(desk.jobs.failed):
+        qtbot.mouseClick(_button(window, "cancel"), Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(primary.hasFocus)
+
+
+def test_no_widget_is_shown_outside_the_window_while_the_pages_are_made(window, mug_session, qtbot, qapp):
+    shown = []
+
+    class Watch(QObject):
+        def eventFilter(self, watched, event):
+            if event.type() == QEvent.Type.Show and isinstance(watched, QWidget) and watched.isWindow():
+                shown.append(watched)
+            return False
+
+    watch = Watch()
+    qapp.installEventFilter(watch)
+    window.desk.open_session(mug_session)
+    for key in (*WORK, *OTHERS):
+        window.show_page(key)
+        qtbot.waitUntil(lambda: window.desk.background.is_idle)
+    qapp.removeEventFilter(watch)
+    assert shown == []
+
+
+def test_a_new_session_has_the_name_that_was_typed_and_goes_to_scan(window, qtbot, monkeypatch, tmp_path):
+    monkeypatch.setenv("POURSIGHT_SESSIONS", str(tmp_path))
+    monkeypatch.setattr(QInputDialog, "getText", lambda *_, **__: ("wood block", True))
+    window.show_page("history")
+    menus = Menus(window)
+    menus.new_session()
+    assert window.shown == "scan"
+    assert window.findChild(QLabel, "session_name").text() == "wood block"
+    assert window.windowTitle() == "wood block – Poursight"
+    primary = window.page("scan").findChild(QPushButton, "primary")
+    qtbot.waitUntil(lambda: primary.text() == "Scan the block")
+
+
+def test_an_edit_is_kept_though_nothing_was_run_with_it(window, mug_session, qtbot):
+    window.desk.open_session(mug_session)
+    workspace = window.desk.workspace
+    workspace.edit(workspace.parameters.model_copy(update={"seed": 77}), "seed")
+    qtbot.waitUntil(lambda: remembered_parameters(mug_session)[1].seed == 77)
+    workspace.close()
+    window.desk.open_session(mug_session)
+    assert workspace.parameters.seed == 77
+
+
+def test_an_arm_that_moves_is_said_to_move(window):
+    arm, chip = window.desk.arm, window.findChild(Chip, "robot_chip")
+    arm.connected = SimpleNamespace(name="UR5", pid=0)
+    for joint_rad, said in ((0.0, "robot ready"), (0.1, "MOVING"), (0.2, "MOVING"), (0.2, "robot ready")):
+        state = SimpleNamespace(joints_rad=np.full(6, joint_rad))
+        arm.status = ArmStatus(state, False, "")
+        arm.changed.emit()
+        assert chip.text == said
+        window.desk.cell.changed.emit()
+        assert chip.text == said, "shown again for another reason"

@@ -4,7 +4,7 @@ import csv
 import io
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QItemSelectionModel, Qt
 from PySide6.QtGui import QGuiApplication
 
 from app.gui.views.fact_table import Column, FactTable, Row
@@ -100,3 +100,13 @@ def test_a_row_to_look_at_is_marked_and_says_so(table):
 
 def test_nothing_can_be_edited(table):
     assert not table.model().flags(table.model().index(0, 0)) & Qt.ItemFlag.ItemIsEditable
+
+
+def test_a_table_that_gets_the_focus_picks_nothing(qtbot, table):
+    table.window().show()
+    with qtbot.assertNotEmitted(table.row_selected):
+        table.setFocus()
+        table.setCurrentIndex(table.model().index(-1, -1))
+        table.selectionModel().setCurrentIndex(
+            table.model().index(0, 0), QItemSelectionModel.SelectionFlag.NoUpdate
+        )

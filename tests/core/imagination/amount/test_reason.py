@@ -141,7 +141,7 @@ def test_a_rim_lower_than_a_candy_is_wide_is_told(planned, rim_m, is_warned):
 def test_without_a_closed_rim_half_is_poured_with_a_warning(planned):
     amount = reason_amount(HALF, capacity_of(100.0), planned)
     assert (amount.n_total, amount.fill_share, amount.fill_height_m) == (50, 0.0, 0.0)
-    assert amount.warning.startswith("No rim is closed all around: single candies may leave")
+    assert amount.warning.startswith("The rim has gaps; a few candies may escape")
 
 
 def test_a_refusal_never_advises_more_than_the_cups_hold(planned):

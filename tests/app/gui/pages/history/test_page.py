@@ -2,7 +2,15 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QCheckBox, QFileDialog, QLabel, QLineEdit, QPushButton, QTableWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QFileDialog,
+    QInputDialog,
+    QLabel,
+    QLineEdit,
+    QPushButton,
+    QTableWidget,
+)
 
 from app.gui.pages.history.session_side import KINDS
 from core.session import Session
@@ -39,7 +47,7 @@ def test_sessions_are_shown_the_newest_first(library, make_page):
     assert names(page) == ["block", "mug"]
     assert said(page, "count") == "2 sessions"
     assert said(page, "session_name") == "block"  # selected: a side panel is never empty
-    assert "Not a container: it holds 0\xa0% of its convex hull" in said(page, "session_verdict")
+    assert "Not a container: hollow for 0\xa0% of its bulk" in said(page, "session_verdict")
     page.select(library / "mug")
     assert "Open container" in said(page, "session_verdict")
     assert said(page, "fact_chosen").endswith("chosen by the program")
@@ -241,3 +249,20 @@ def test_an_export_that_fails_is_reported_by_the_job(library, make_page, desk, q
         page.export(ZIP, library / "block", Path("/nowhere/block.zip"))
     assert "There is no folder /nowhere" in failed.args[1].sentence
     assert button(page, "export_zip").isEnabled()
+
+
+@pytest.mark.parametrize("is_open", [True, False])
+def test_a_session_is_renamed(library, make_page, desk, qtbot, is_open):
+    if is_open:
+        desk.workspace.open(library / "mug")
+    page = make_page()
+    page.select(library / "mug")
+    button(page, "rename").click()
+    dialog = page.findChild(QInputDialog, "rename_dialog")
+    assert dialog.textValue() == "mug"
+    dialog.setTextValue("blue mug")
+    dialog.accept()
+    qtbot.waitUntil(lambda: "blue mug" in names(page))
+    assert Session.open(library / "mug").name == "blue mug"
+    if is_open:
+        assert desk.workspace.session_name == "blue mug"

@@ -55,7 +55,7 @@ def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened,
     verdict, capacity = text(page, "drop_verdict"), page.content.capacity
     assert verdict.startswith(f"Open container: it holds {capacity.n_candies:.0f} candies")
     assert text(page, "drop_reason").startswith(
-        f"By Omega an open container: {found.n_in} of {found.n_drop} candies stayed"
+        f"By Omega an open container: {found.n_in} of {found.n_drop} dropped candies stayed"
     )
     assert page.side.omega.omega == found.omega
     assert f"{found.n_in} of {found.n_drop}" in page.side.footprint.accessibleDescription()
@@ -63,13 +63,14 @@ def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened,
     assert facts["Seed"] == "0"
     assert facts["Holds"] == f"{capacity.n_candies:.0f} candies, {capacity.bulk_ml:.0f} ml"
     assert f"{np.degrees(page.content.retention.holds_rad):.0f}°" in facts["Tilted"]
-    assert facts["Inside"].endswith(str(found.n_in))
+    assert facts["Inside after"].startswith("drop ")
+    assert facts["Inside after"].endswith(f" / push {found.n_in}")
     assert f"{found.n_in} kept" in text(page, "drop_legend")
 
 
 def test_a_block_says_why_it_is_not_a_container(opened, block_session):
     page = opened(block_session)
-    assert text(page, "drop_verdict").startswith("Not an open container: it holds no candy")
+    assert text(page, "drop_verdict").startswith("Not an open container: hollow for 0 % of its bulk")
     assert text(page, "drop_reason").startswith("By Omega not an open container: 0 of")
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.gui.pages.pours.choice import chosen_sentence, feasibility_sentence, why_sentences
+from app.gui.pages.pours.choice import chosen_sentence, feasibility_sentence, risk_warning, why_sentences
 from app.gui.pages.pours.comparison import (
     OtherPours,
     comparison_sentence,
@@ -19,6 +19,7 @@ from app.gui.pages.pours.page import map_rotation_deg
 from app.gui.pages.pours.results import PoursKey, load_pours
 from app.operations.choosing import current_motions
 from core.errors import SessionError
+from core.imagination.results import PourRisk, joined
 from core.session import Session
 from core.session.operator_choice import CHOICE_FILE
 from hardware.cell import SIMULATED_CELL, read_cell
@@ -59,7 +60,10 @@ def test_no_container_says_why_with_numbers(block_session, cell):
     pours = load_pours(PoursKey(block_session, cell, None))
     assert pours.grid is None and pours.chosen is None
     assert "not an open container" in chosen_sentence(pours)
-    assert "Not an open container: it holds no candy; a container holds more" in why_sentences(pours)[0]
+    assert (
+        "Not an open container: hollow for 0\xa0% of its bulk (containers: over 10\xa0%)"
+        in why_sentences(pours)[0]
+    )
 
 
 def test_a_mesh_is_in_no_cell(mug_session, cell):
@@ -124,3 +128,13 @@ def test_what_has_no_pours_cannot_be_compared_with(block_session, tmp_path):
 @pytest.mark.parametrize(("azimuth", "rotation"), [(-90, 0), (-60, -30), (0, -90), (180, 90), (90, -180)])
 def test_the_map_lies_as_the_view_does(azimuth, rotation):
     assert map_rotation_deg(azimuth) == pytest.approx(rotation)
+
+
+@pytest.mark.parametrize(("n_clean", "warns"), [(13, False), (12, True)])
+def test_the_heading_warns_where_a_clean_pour_is_not_sure(mug_session, n_clean, warns):
+    shown = load_pours(PoursKey(mug_session, None, None))
+    i, j = shown.chosen
+    tries = [[[0] for _ in range(3)] for _ in range(8)]
+    tries[i][j] = [0] * n_clean + [3] * (13 - n_clean)
+    risky = replace(shown, imagined_risk=PourRisk(20, joined(tries)), motions=None)
+    assert ("A clean pour is only" in risk_warning(risky)) is warns

@@ -179,3 +179,13 @@ def test_a_page_that_is_asked_to_scan_before_it_is_ready_does_so_then(qtbot, des
     assert desk.workspace.folder.name.endswith("-bowl")
     desk.jobs.cancel()
     qtbot.waitUntil(lambda: desk.jobs.is_idle)
+
+
+def test_an_import_that_fails_leaves_no_session(qtbot, desk, small_cell_page, sessions, tmp_path):
+    empty = tmp_path / "no views"
+    empty.mkdir()
+    with qtbot.waitSignal(desk.jobs.failed):
+        drop(small_cell_page, empty)
+    settle(qtbot, desk, small_cell_page)
+    assert desk.workspace.session is None
+    assert not sessions.exists() or list(sessions.iterdir()) == []

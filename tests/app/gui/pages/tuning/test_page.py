@@ -187,7 +187,7 @@ def test_both_kinds_of_sets_are_kept_apart(desk, qtbot, folder):
     assert (dropped.score, dropped.threshold, dropped.is_right) == (0.6, 0.13, False)
     assert dropped.is_flipped
     block = page._view.objects._rows["block"]
-    assert "fill 3.1 % of its convex hull" in block.toolTip(1)
+    assert "Hollow for 3.1 % of its bulk" in block.toolTip(1)
     assert "60 of 100 candies stayed; the threshold is 0.13" in block.toolTip(2)
     by_capacity, by_omega = page._view.sets.rows
     assert by_capacity.values[1:3] == ("Capacity share", "2 / 2, 100.0 %")
