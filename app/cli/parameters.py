@@ -109,7 +109,7 @@ def parameters_page() -> str:
 
 def print_difference(preset: str, parameters: Parameters) -> None:
     """Print what differs from the preset, on stderr."""
-    base = load_preset(preset) if not Path(preset).suffix else Parameters()
+    base = load_preset(preset) if preset in PRESET_NAMES else Parameters()
     for name, (before, after) in difference(parameters, base).items():
         print(f"{name} = {short(after)} (preset {preset}: {short(before)})", file=sys.stderr)
 

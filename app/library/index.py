@@ -13,6 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from app.library.session_folder import fingerprint, is_session, thumbnail_fact
 from app.library.summary import SessionSummary, summarize
 from core.errors import SessionError
+from core.files import read_content
 from core.session import explained
 from core.session.locking import SessionLock
 
@@ -110,7 +111,7 @@ class Library:
 
     def _read_index(self) -> _Index:
         try:
-            return _INDEX.validate_json((self._home / INDEX_FILE).read_bytes())
+            return _INDEX.validate_json(read_content(self._home / INDEX_FILE))
         except (OSError, ValidationError):  # missing, damaged or of another version: it is rebuilt
             return {}
 
@@ -120,7 +121,7 @@ class Library:
 
     def _read_remembered(self) -> list[Path]:
         try:
-            return _PATHS.validate_json((self._home / REMEMBERED_FILE).read_bytes())
+            return _PATHS.validate_json(read_content(self._home / REMEMBERED_FILE))
         except (OSError, ValidationError):
             return []
 

@@ -48,7 +48,7 @@ class SessionSummary:
         stages: finished ones that belong together, in the order of the work.
         size_bytes: on the disk.
         thumbnail: a picture of 320 x 240; None if it has yet to be made.
-        problem: why it cannot be read, as a sentence.
+        problem: why it, or a pour in it, cannot be read, as a sentence.
     """
 
     path: Path
@@ -130,6 +130,7 @@ def _summarize(folder: Path) -> SessionSummary:
         stages=tuple(view.records),
         size_bytes=size_bytes(folder),
         thumbnail=current_thumbnail(folder, view.records),
+        problem=next((run.problem for run in runs if run.problem), ""),
     )
 
 
