@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import json
 import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
-from io import BytesIO
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
@@ -100,6 +101,24 @@ def read_json(path: Path, kind: type | None = None) -> dict[str, Any]:
     except ValueError as error:
         raise SessionError(f"{path} is damaged ({reason(error)}).", remedy) from error
     return known
+
+
+def read_csv(path: Path) -> tuple[tuple[str, ...], list[dict[str, str | None]]]:
+    """Return the columns and the rows of a CSV in UTF-8.
+
+    Raises:
+        OSError: the file cannot be read.
+        ValueError: it is no such text.
+    """
+    text = read_content(path).decode("utf-8-sig")
+    try:
+        reader = csv.DictReader(StringIO(text, newline=""))
+        rows = list(reader)
+    except csv.Error as error:
+        raise ValueError(str(error)) from error
+    columns = tuple(reader.fieldnames or ())
+    # What stands behind the last column has no name.
+    return columns, [{column: row.get(column) for column in columns} for row in rows]
 
 
 def write_arrays(path: Path, **arrays: AnyArray) -> None:

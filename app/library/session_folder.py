@@ -33,7 +33,7 @@ def is_session(folder: Path) -> bool:
     """Whether a folder is a session, even a damaged one."""
     try:
         return (folder / HEADER_FILE).is_file() or has_records(folder)
-    except OSError:  # not ours to look into
+    except (OSError, ValueError):  # not ours to look into, or no path at all
         return False
 
 
@@ -83,8 +83,7 @@ def _visible(folder: Path) -> list[os.DirEntry[str]]:
 
 
 def _fact(entry: os.DirEntry[str]) -> str:
-    found = entry.stat()
-    return f"{entry.path} {found.st_mtime_ns} {found.st_size}"
+    return _fact_of(Path(entry.path))  # a link may lead nowhere
 
 
 def _fact_of(path: Path) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from app.library.session_folder import UNFINISHED_SCAN, size_bytes
 from app.library.thumbnail import current_thumbnail
 from core.errors import PoursightError
+from core.formats import excerpt
 from core.pipeline.session_view import SessionView
 from core.session import StageRecord
 from core.session.pour_runs import pour_runs
@@ -84,7 +85,7 @@ class SessionSummary:
         """When it was made, in this computer's time zone; None if that cannot be read."""
         try:
             return datetime.fromisoformat(self.created).astimezone()
-        except ValueError:
+        except (OverflowError, ValueError):
             return None
 
 
@@ -97,8 +98,8 @@ def summarize(folder: Path) -> SessionSummary:
         return _unreadable(folder, str(error))
     except OSError as error:
         return _unreadable(folder, f"{error.filename} cannot be read ({error.strerror}); make it readable.")
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        said = f"The session {folder} is damaged ({error!r}); run its stages again or delete it."
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+        said = f"The session {folder} is damaged ({excerpt(repr(error))}); run its stages again or delete it."
         return _unreadable(folder, said)
 
 

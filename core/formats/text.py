@@ -19,6 +19,15 @@ def excerpt(content: object) -> str:
     return line if is_whole else f"{line[: LONGEST_EXCERPT - 3]}..."
 
 
+def is_text(text: str) -> bool:
+    """Whether it can be written as UTF-8: the names of files need not be text."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
+
+
 def parse_json(content: bytes) -> Any:
     """Parse JSON.
 
