@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import csv
+import errno
 import json
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from core.errors import Remedy, SessionError
+from core.formats import MADE_BY_REPORT, check_arrays, check_table, excerpt, kind_of, parse_json
 from core.geometry import AnyArray
 
 
@@ -34,19 +41,84 @@ def write_json(path: Path, table: dict[str, Any]) -> None:
     write_whole(path, json.dumps(table, indent=2, allow_nan=False) + "\n")
 
 
-def read_json(path: Path) -> dict[str, Any]:
-    """Read a table.
+def read_content(path: Path) -> bytes:
+    """Read a whole file.
 
     Raises:
-        SessionError: the file is missing, cut short or no table.
+        OSError: it cannot be read, or is a folder, a pipe or a device, on which one would wait forever.
     """
+    check_regular(path)
+    return path.read_bytes()
+
+
+def check_regular(path: Path) -> None:
+    """Refuse what cannot be read to its end.
+
+    Raises:
+        OSError: it is not there, or a folder, a pipe or a device.
+    """
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise OSError(errno.EINVAL, "it is no regular file", str(path))
+
+
+def reason(error: BaseException) -> str:
+    """Return why something could not be read, fit for brackets in a sentence: the file's content is cut."""
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return excerpt(said) or type(error).__name__
+
+
+def is_file(path: Path) -> bool:
+    """Whether a file is there; no, too, if its path is too long or cannot be followed."""
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
+        return path.is_file()
+    except OSError:
+        return False
+
+
+def read_json(path: Path, kind: type | None = None) -> dict[str, Any]:
+    """Read a table; of a session's file only what this version knows, once it is what it must be.
+
+    Args:
+        path: the file.
+        kind: what it must hold; by default what `core.formats` says of a file of that name in that folder.
+
+    Raises:
+        SessionError: the file is missing, cut short, no table, or not what it must be.
+    """
+    kind = kind or kind_of(path)
+    remedy = _remedy(path)
+    try:
+        content = read_content(path)
+        table = parse_json(content)
     except (OSError, ValueError) as error:
-        raise SessionError(f"{path} cannot be read ({error}).", Remedy.RUN_AGAIN) from error
+        raise SessionError(f"{path} cannot be read ({reason(error)}).", remedy) from error
     if not isinstance(table, dict):
-        raise SessionError(f"{path} does not contain a JSON object.", Remedy.RUN_AGAIN)
-    return table
+        raise SessionError(f"{path} does not contain a JSON object.", remedy)
+    if kind is None:
+        return table
+    try:
+        known: dict[str, Any] = check_table(content, kind)
+    except ValueError as error:
+        raise SessionError(f"{path} is damaged ({reason(error)}).", remedy) from error
+    return known
+
+
+def read_csv(path: Path) -> tuple[tuple[str, ...], list[dict[str, str | None]]]:
+    """Return the columns and the rows of a CSV in UTF-8.
+
+    Raises:
+        OSError: the file cannot be read.
+        ValueError: it is no such text.
+    """
+    text = read_content(path).decode("utf-8-sig")
+    try:
+        reader = csv.DictReader(StringIO(text, newline=""))
+        rows = list(reader)
+    except csv.Error as error:
+        raise ValueError(str(error)) from error
+    columns = tuple(reader.fieldnames or ())
+    # What stands behind the last column has no name.
+    return columns, [{column: row.get(column) for column in columns} for row in rows]
 
 
 def write_arrays(path: Path, **arrays: AnyArray) -> None:
@@ -55,13 +127,37 @@ def write_arrays(path: Path, **arrays: AnyArray) -> None:
 
 
 def read_arrays(path: Path) -> dict[str, AnyArray]:
-    """Read named arrays.
+    """Read named arrays; those of a session's file are what `core.formats` says.
 
     Raises:
         SessionError: the file is missing or damaged.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
+        with np.load(BytesIO(read_content(path)), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        check_arrays(path, arrays)
     except Exception as error:  # zipfile, zlib and numpy each raise their own
-        raise SessionError(f"{path} cannot be read ({error}).", Remedy.RUN_AGAIN) from error
+        raise SessionError(f"{path} cannot be read ({reason(error)}).", _remedy(path)) from error
+    return arrays
+
+
+@contextmanager
+def reading(path: Path) -> Iterator[None]:
+    """Turn what files raise that are whole but do not fit together into a sentence that names their place.
+
+    Raises:
+        SessionError: the block raised what damaged content does.
+    """
+    try:
+        yield
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        said = reason(error) if isinstance(error, ValueError) else excerpt(repr(error))
+        raise SessionError(f"{path} is damaged ({said}).", _remedy(path)) from error
+
+
+def _remedy(path: Path) -> Remedy:
+    """Return what makes a file anew: all stages but the motions are made by a report."""
+    names = {path.name, path.parent.name}
+    if "motion" in names:
+        return Remedy.JUDGE_MOTIONS
+    return Remedy.RUN_STAGES if names & MADE_BY_REPORT else Remedy.RUN_AGAIN

@@ -6,6 +6,7 @@ OFF have z up, GLB has y up by its standard (glTF 2.0, section 3.4) and is turne
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from core.errors import InputError, Remedy, SessionError
+from core.files import is_file, read_content, reason
 from core.geometry import rotation_x
 from core.mesh import TriangleMesh
 from core.mesh_topology import join, topology, weld
@@ -27,6 +29,7 @@ MAX_CROWDED_SHARE = 0.02
 _CENTIMETRES_BELOW = 30.0
 """A larger number is taken for millimetres: household objects measure 3 to 30 cm, 30 mm and more."""
 _CHUNK_BYTES = 1 << 24
+_TEXT_ONLY = (".obj", ".off")
 _PLY_FACE = np.dtype([("count", "u1"), ("corners", "<i4", (3,))])
 _PLY_HEADER = (
     "ply\nformat binary_little_endian 1.0\ncomment metres\n"
@@ -101,21 +104,27 @@ def read_ply(path: Path) -> TriangleMesh:
         SessionError: the file is missing, damaged or of another kind.
     """
     try:
-        content = path.read_bytes()
+        content = read_content(path)
         end = content.index(b"end_header\n") + len(b"end_header\n")
         lines = content[:end].decode("ascii").splitlines()
-        n_vertices, n_faces = (int(line.split()[2]) for line in lines if line.startswith("element"))
+        n_vertices, n_faces = (int(line.split()[-1]) for line in lines if line.startswith("element"))
         if content[:end] != _PLY_HEADER.format(vertices=n_vertices, faces=n_faces).encode():
             raise ValueError("another kind of PLY")
         vertices = np.frombuffer(content, "<f8", count=3 * n_vertices, offset=end).reshape(-1, 3)
         faces = np.frombuffer(content, _PLY_FACE, count=n_faces, offset=end + vertices.nbytes)["corners"]
+        if not (
+            n_faces > 0 and faces.min() >= 0 and faces.max() < n_vertices and np.isfinite(vertices).all()
+        ):
+            raise ValueError(
+                "no faces, a face of vertices that it does not hold, or a vertex that is no number"
+            )
     except (OSError, ValueError) as error:
-        raise SessionError(f"{path} cannot be read ({error}).", Remedy.RUN_AGAIN) from error
+        raise SessionError(f"{path} cannot be read ({reason(error)}).", Remedy.RUN_AGAIN) from error
     return TriangleMesh(vertices.astype(np.float64), faces.astype(np.int64))
 
 
 def _check_file(path: Path) -> None:
-    if not path.is_file():
+    if not is_file(path):
         raise InputError(f"There is no mesh file {path}; check the name.")
     counter = _FACE_COUNTERS.get(path.suffix.lower())
     if counter is None:
@@ -126,6 +135,33 @@ def _check_file(path: Path) -> None:
     except (OSError, ValueError) as error:
         raise _unreadable(path, error) from error
     _check_face_count(path, n_faces)
+    if path.suffix.lower() in _TEXT_ONLY:
+        _check_text(path)
+
+
+def _check_text(path: Path) -> None:
+    """Refuse what the parser would take for something else than it is."""
+    content = path.read_bytes()
+    if content[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in content:
+        raise InputError(f"{path} is no text in ASCII or UTF-8; export it again.")
+    if path.suffix.lower() == ".obj":
+        _check_obj(path, content)
+
+
+def _check_obj(path: Path, content: bytes) -> None:
+    counts_back = False
+    for number, line in enumerate(content.splitlines(), 1):
+        words = line.split()
+        kind = words[0] if words else b""
+        if kind == b"v" and len(words) < 4:
+            raise InputError(f"{path} has a vertex with fewer than three coordinates in line {number}.")
+        if kind == b"v" and counts_back:
+            # The parser counts from the last vertex of the file, the format from the last one so far.
+            raise InputError(f"{path} counts vertices backwards from line {number}; export it without that.")
+        if kind == b"f":
+            if b"0" in words or any(word.startswith(b"0/") for word in words):
+                raise InputError(f"In {path}, line {number}, a face names vertex 0; OBJ counts from 1.")
+            counts_back = counts_back or b" -" in line
 
 
 def _check_face_count(path: Path, n_faces: int) -> None:
@@ -137,13 +173,13 @@ def _check_face_count(path: Path, n_faces: int) -> None:
 
 
 def _unreadable(path: Path, error: BaseException) -> InputError:
-    said = " ".join(str(error).split())[:120] or type(error).__name__
-    return InputError(f"{path} cannot be read as a mesh ({said}); export it again.")
+    return InputError(f"{path} cannot be read as a mesh ({reason(error)}); export it again.")
 
 
 def _load(path: Path) -> list[TriangleMesh]:
     import trimesh
 
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)  # it logs tracebacks of what it can do without
     options: dict[str, Any] = {"process": False}
     if path.suffix.lower() == ".obj":
         options |= {"split_objects": True, "group_material": False, "skip_materials": True}
@@ -154,6 +190,8 @@ def _load(path: Path) -> list[TriangleMesh]:
             TriangleMesh(np.asarray(mesh.vertices, dtype=float), np.asarray(mesh.faces, dtype=np.int64))
             for mesh in meshes
         ]
+        if not all(part.vertices_m.shape[1:] == part.faces.shape[1:] == (3,) for part in parts):
+            raise ValueError("its vertices or faces do not have three numbers each")
     except Exception as error:  # each format's parser raises its own
         raise _unreadable(path, error) from error
     if path.suffix.lower() == ".glb":
@@ -173,7 +211,7 @@ def _check_numbers(path: Path, parts: list[TriangleMesh]) -> None:
     used = np.concatenate([part.vertices_m[part.faces].reshape(-1, 3) for part in parts])
     if not np.isfinite(used).all():
         raise InputError(f"{path} has vertices that are not finite numbers; repair it in a mesh tool.")
-    _check_size(path, float(np.max(used.max(axis=0) / 2 - used.min(axis=0) / 2) * 2))
+    _check_size(path, 2 * float(np.max(used.max(axis=0) / 2 - used.min(axis=0) / 2)))
 
 
 def _check_size(path: Path, extent_m: float) -> None:

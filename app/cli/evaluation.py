@@ -7,12 +7,26 @@ from typing import Annotated, Literal, Optional
 
 import typer
 
-from app.cli.options import PresetOption, SeedOption, SetOption, WorkersOption
+from app.cli.options import (
+    PresetOption,
+    SeedOption,
+    SetOption,
+    WorkersOption,
+    given_path,
+    written_file,
+)
 
-ObjectsArgument = Annotated[Path, typer.Argument(metavar="OBJECTS", help="A folder with meshes.")]
+ObjectsArgument = Annotated[
+    Path, typer.Argument(metavar="OBJECTS", help="A folder with meshes.", parser=given_path)
+]
 LabelsOption = Annotated[
     Optional[Path],  # noqa: UP045
-    typer.Option("--labels", metavar="CSV", help="Labels, or raw answers; by default the CSV in OBJECTS."),
+    typer.Option(
+        "--labels",
+        metavar="CSV",
+        help="Labels, or raw answers; by default the CSV in OBJECTS.",
+        parser=given_path,
+    ),
 ]
 InputOption = Annotated[
     Literal["mesh", "scan"],
@@ -23,7 +37,10 @@ InputOption = Annotated[
 def evaluate(
     objects: ObjectsArgument,
     out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Folder of the results; continued if it exists.")
+        Path,
+        typer.Option(
+            "--out", metavar="DIR", help="Folder of the results; continued if it exists.", parser=given_path
+        ),
     ],
     labels: LabelsOption = None,
     source: InputOption = "scan",
@@ -94,11 +111,15 @@ def evaluate(
 
 
 def compare(
-    before: Annotated[Path, typer.Argument(metavar="BEFORE", help="An evaluation's folder.")],
-    after: Annotated[Path, typer.Argument(metavar="AFTER", help="Another one's.")],
+    before: Annotated[
+        Path, typer.Argument(metavar="BEFORE", help="An evaluation's folder.", parser=given_path)
+    ],
+    after: Annotated[Path, typer.Argument(metavar="AFTER", help="Another one's.", parser=given_path)],
     html: Annotated[
         Optional[Path],  # noqa: UP045
-        typer.Option("--html", metavar="FILE", help="By default comparison.html in AFTER."),
+        typer.Option(
+            "--html", metavar="FILE", help="By default comparison.html in AFTER.", parser=written_file
+        ),
     ] = None,
 ) -> None:
     """Say what changed from one evaluation to another, and which objects flipped."""
@@ -144,7 +165,10 @@ def tune(
     spills: Annotated[
         Optional[Path],  # noqa: UP045
         typer.Option(
-            "--spills", metavar="CSV", help="Also fit the pours: object, theta (rad), indent (m), spilled."
+            "--spills",
+            metavar="CSV",
+            parser=given_path,
+            help="Also fit the pours: object, theta (rad), indent (m), spilled.",
         ),
     ] = None,
     truth_spills: Annotated[
@@ -152,6 +176,7 @@ def tune(
         typer.Option(
             "--spills-from-truth",
             metavar="CSV",
+            parser=written_file,
             help="Measure them in the ground-truth simulation first, and write them.",
         ),
     ] = None,

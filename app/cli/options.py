@@ -1,21 +1,87 @@
-"""Arguments and options that several commands share."""
+"""Arguments and options that several commands share, and the one place where paths enter."""
 
 from __future__ import annotations
 
+import errno
+import os
+import stat
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-SessionArgument = Annotated[Path, typer.Argument(metavar="SESSION", help="A session's folder.")]
-SessionOption = Annotated[Path, typer.Option("--session", metavar="DIR", help="The session's folder.")]
+from core.errors import InputError
+from core.formats import excerpt, is_text
+
+_MISSING = {errno.ENOENT, errno.ENOTDIR}
+"""The commands themselves say what they miss."""
+
+
+def given_path(text: str) -> Path:
+    """Return a path that was typed, of a file or folder that is there or shall be made.
+
+    Raises:
+        InputError: no program could use it: it is empty, too long or not UTF-8, it leads through a folder
+            that may not be entered, or to a pipe or a device.
+    """
+    if not text:
+        raise InputError("A path is empty; name a file or a folder.")
+    if not is_text(text) or not text.isprintable():
+        raise InputError(
+            f"The path {_shown(text)} is not UTF-8, or has signs that cannot be shown; rename it."
+        )
+    try:
+        mode = Path(text).stat().st_mode
+    except OSError as error:
+        if error.errno in _MISSING:
+            return Path(text)
+        raise InputError(
+            f"The path {_shown(text)} cannot be used ({error.strerror}); name another one."
+        ) from error
+    if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
+        raise InputError(f"{_shown(text)} is neither a file nor a folder; name one.")
+    if not os.access(text, os.R_OK | (os.X_OK if stat.S_ISDIR(mode) else 0)):
+        raise InputError(f"{_shown(text)} cannot be read (Permission denied); make it readable.")
+    return Path(text)
+
+
+def written_file(text: str) -> Path:
+    """Return a path that was typed, of a file to be written; checked before the work is done.
+
+    Raises:
+        InputError: as in `given_path`, or it is a folder, or lies in none that may be written.
+    """
+    path = given_path(text)
+    if path.is_dir():
+        raise InputError(f"{_shown(text)} is a folder; name a file in it.")
+    if not path.parent.is_dir():
+        raise InputError(f"There is no folder {_shown(str(path.parent))}; make it, or name a file elsewhere.")
+    if not os.access(path.parent, os.W_OK | os.X_OK):
+        raise InputError(f"The folder {_shown(str(path.parent))} cannot be written; name a file elsewhere.")
+    return path
+
+
+def _shown(text: str) -> str:
+    return excerpt(text.encode("utf-8", "backslashreplace").decode())
+
+
+SessionArgument = Annotated[
+    Path, typer.Argument(metavar="SESSION", help="A session's folder.", parser=given_path)
+]
+SessionOption = Annotated[
+    Path, typer.Option("--session", metavar="DIR", help="The session's folder.", parser=given_path)
+]
 CellOption = Annotated[
     Path | None,
-    typer.Option("--cell", metavar="FILE", help="The cell's file; by default the simulated cell."),
+    typer.Option(
+        "--cell", metavar="FILE", help="The cell's file; by default the simulated cell.", parser=given_path
+    ),
 ]
 PourCellOption = Annotated[
     Path | None,
-    typer.Option("--cell", metavar="FILE", help="The cell's file; by default the cell of the scan."),
+    typer.Option(
+        "--cell", metavar="FILE", help="The cell's file; by default the cell of the scan.", parser=given_path
+    ),
 ]
 PresetOption = Annotated[
     str | None,

@@ -14,6 +14,7 @@ from rich.table import Table
 from app.library.places import named_preset
 from app.library.session_folder import remembered_parameters
 from core.errors import InputError
+from core.formats import excerpt
 from core.parameters import (
     PRESET_NAMES,
     Parameters,
@@ -66,7 +67,7 @@ def named_values(option: str, texts: Sequence[str]) -> dict[str, str]:
     for text in texts:
         name, equals, value = text.partition("=")
         if not equals:
-            raise InputError(f"'{option} {text}' lacks a value: write {option} name=value.")
+            raise InputError(f"'{option} {excerpt(text)}' lacks a value: write {option} name=value.")
         found[name.strip()] = value.strip()
     return found
 
@@ -109,7 +110,7 @@ def parameters_page() -> str:
 
 def print_difference(preset: str, parameters: Parameters) -> None:
     """Print what differs from the preset, on stderr."""
-    base = load_preset(preset) if not Path(preset).suffix else Parameters()
+    base = load_preset(preset) if preset in PRESET_NAMES else Parameters()
     for name, (before, after) in difference(parameters, base).items():
         print(f"{name} = {short(after)} (preset {preset}: {short(before)})", file=sys.stderr)
 

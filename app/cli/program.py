@@ -18,6 +18,8 @@ from app.cli.options import (
     SessionOption,
     SetOption,
     WorkersOption,
+    given_path,
+    written_file,
 )
 from app.cli.remedies import worded
 from core.errors import PoursightError
@@ -56,7 +58,9 @@ def desktop(
 
 @app.command("import")
 def import_scan(
-    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="A scan in the authors' layout.")],
+    folder: Annotated[
+        Path, typer.Argument(metavar="FOLDER", help="A scan in the authors' layout.", parser=given_path)
+    ],
     session: SessionOption,
 ) -> None:
     """Take a scan into a session: rgbd/frame-*.{color.png,depth.png,pose.txt}, camera-intrinsics.txt."""
@@ -118,18 +122,29 @@ def reconstruct(
 @app.command()
 def imagine(
     source: Annotated[
-        Path, typer.Argument(metavar="SESSION|MESH", help="A session, or a mesh in metres, z up.")
+        Path,
+        typer.Argument(
+            metavar="SESSION|MESH", help="A session, or a mesh in metres, z up.", parser=given_path
+        ),
     ],
     preset: PresetOption = None,
     settings: SetOption = None,
     workers: WorkersOption = None,
     seed: SeedOption = None,
     json_file: Annotated[
-        Path | None, typer.Option("--json", metavar="FILE", help="Write the answer there ('-': on stdout).")
+        Path | None,
+        typer.Option(
+            "--json", metavar="FILE", help="Write the answer there ('-': on stdout).", parser=written_file
+        ),
     ] = None,
     session: Annotated[
         Path | None,
-        typer.Option("--session", metavar="DIR", help="For a mesh: store everything in this session."),
+        typer.Option(
+            "--session",
+            metavar="DIR",
+            help="For a mesh: store everything in this session.",
+            parser=given_path,
+        ),
     ] = None,
 ) -> None:
     """Imagine whether the object is an open container and how to pour into it."""
@@ -223,10 +238,17 @@ def sessions(
 def export(
     session: SessionArgument,
     html: Annotated[
-        Path | None, typer.Option("--html", metavar="FILE", help="The report as one file for a browser.")
+        Path | None,
+        typer.Option(
+            "--html", metavar="FILE", help="The report as one file for a browser.", parser=written_file
+        ),
     ] = None,
-    pdf: Annotated[Path | None, typer.Option("--pdf", metavar="FILE", help="The report for paper.")] = None,
-    zip_file: Annotated[Path | None, typer.Option("--zip", metavar="FILE", help="The whole session.")] = None,
+    pdf: Annotated[
+        Path | None, typer.Option("--pdf", metavar="FILE", help="The report for paper.", parser=written_file)
+    ] = None,
+    zip_file: Annotated[
+        Path | None, typer.Option("--zip", metavar="FILE", help="The whole session.", parser=written_file)
+    ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files that exist.")] = False,
     workers: WorkersOption = None,
 ) -> None:
@@ -242,7 +264,10 @@ def export(
 def demo(
     name: Annotated[str, typer.Option("--object", metavar="NAME", help="A built-in object.")] = "mug",
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="The session's folder; by default demo/NAME.")
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="The session's folder; by default demo/NAME.", parser=given_path
+        ),
     ] = None,
     preset: PresetOption = None,
     settings: SetOption = None,

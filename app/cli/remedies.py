@@ -8,6 +8,8 @@ REMEDIES = {
     Remedy.RUN_AGAIN: "Run the same command again.",
     Remedy.CONTINUE: "Run the same command to continue.",
     Remedy.FEWER_WORKERS: "Run the same command with fewer --workers.",
+    Remedy.RUN_STAGES: "'poursight report SESSION' makes it anew.",
+    Remedy.JUDGE_MOTIONS: "'poursight plan SESSION' makes it anew.",
     Remedy.IMPORT_SCAN: "Import a scan with 'poursight import', or take one with 'poursight scan'.",
     Remedy.NEW_SESSION: "Give another --session.",
     Remedy.CHOOSE_OBJECT: "Name it, such as --object mug; for a real cell give --cell FILE.",

@@ -239,13 +239,13 @@ def _cells(summary: SessionSummary) -> tuple[str, ...]:
     made = summary.created_here
     return (
         summary.created if made is None else f"{made:%Y-%m-%d %H:%M}",
-        summary.name,
+        summary.name.encode("utf-8", "backslashreplace").decode(),
         summary.source,
         summary.verdict_words,
         _percent(summary.chosen or summary.best),
         summary.problem or _outcome(summary),
         f"{summary.size_bytes / 1e6:.1f}",
-        str(summary.path),
+        str(summary.path).encode("utf-8", "backslashreplace").decode(),
     )
 
 

@@ -14,6 +14,8 @@ def remedy_words(remedy: Remedy | None) -> str:
         Remedy.RUN_AGAIN: translate("Remedy", "Run that step again."),
         Remedy.CONTINUE: translate("Remedy", "Press Try again to continue."),
         Remedy.FEWER_WORKERS: translate("Remedy", "Close other programs, then press Try again."),
+        Remedy.RUN_STAGES: translate("Remedy", "Run its step again."),
+        Remedy.JUDGE_MOTIONS: translate("Remedy", "Plan the pour again on the Robot page."),
         Remedy.IMPORT_SCAN: translate("Remedy", "Scan the object, or import a scan, on the Scan page."),
         Remedy.NEW_SESSION: translate("Remedy", "Start a new session."),
         Remedy.SCAN_THE_MESH: translate("Remedy", "On the Scan page choose the mesh as object, and scan."),

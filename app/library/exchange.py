@@ -6,8 +6,10 @@ be from anybody, so it is not trusted.
 
 from __future__ import annotations
 
+import lzma
 import shutil
 import stat
+import struct
 import time
 import zlib
 from collections.abc import Iterator, Sequence
@@ -20,6 +22,8 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 from app.library.places import free_folder
 from app.library.session_folder import REPORT_FILE, fingerprint, newest_change_ns, session_files
 from core.errors import InputError, SessionError, StageError
+from core.files import check_regular, reason
+from core.formats import excerpt
 from core.progress import Reporter
 from core.session import Session, explained
 from core.session.header import HEADER_FILE
@@ -28,6 +32,17 @@ from core.workers import Task, WorkerPool
 PDF_PACKAGES = ("libpango-1.0-0", "libpangoft2-1.0-0", "libharfbuzz-subset0")
 """Debian's names of what WeasyPrint loads at run time."""
 
+_MOST_UNPACKED = 100
+"""Times an archive's size; recordings and logs are packed to a twentieth at most."""
+_SMALL_BYTES = 10_000_000
+"""As much may be unpacked from any archive."""
+_MOST_OF_FREE = 0.9
+"""Of the free disk: a full one would stop whatever else runs."""
+_DAMAGED = (
+    BadZipFile, EOFError, LookupError, NotImplementedError, RuntimeError, ValueError, lzma.LZMAError,
+    struct.error, zlib.error,
+)  # fmt: skip
+"""What `zipfile` and its decompressors raise."""
 _PACKED_ALREADY = {".mp4", ".npz", ".png", ".jpg"}
 
 
@@ -175,14 +190,17 @@ def import_zip(archive: Path, root: Path, reporter: Reporter) -> Path:
         SessionError: the session in it cannot be opened, or the disk is full.
     """
     try:
+        check_regular(archive)
         with ZipFile(archive) as opened:
             members, top = _members(opened, archive)
             _check_free_space(members, root, archive)
             return _unpack(opened, members, top, root, reporter)
-    except (BadZipFile, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
-        raise InputError(f"{archive} is no ZIP file that can be read ({error}); export it again.") from error
     except OSError as error:
-        raise InputError(f"{archive} cannot be unpacked into {root} ({error.strerror}).") from error
+        raise InputError(f"{archive} cannot be unpacked into {root} ({reason(error)}).") from error
+    except _DAMAGED as error:
+        raise InputError(
+            f"{archive} is no ZIP file that can be read ({reason(error)}); export it again."
+        ) from error
 
 
 def _members(archive: ZipFile, path: Path) -> tuple[list[ZipInfo], str]:
@@ -190,7 +208,7 @@ def _members(archive: ZipFile, path: Path) -> tuple[list[ZipInfo], str]:
     members = [member for member in archive.infolist() if not member.is_dir()]
     strange = [member.filename for member in members if not _is_plain(member)]
     if strange:
-        raise InputError(f"{path} holds '{strange[0]}', which no session does; it is not unpacked.")
+        raise InputError(f"{path} holds '{excerpt(strange[0])}', which no session does; it is not unpacked.")
     names = {member.filename for member in members}
     tops = {name.partition("/")[0] for name in names}
     top = tops.pop() if len(tops) == 1 else "."
@@ -204,7 +222,9 @@ def _is_plain(member: ZipInfo) -> bool:
     name = PurePosixPath(member.filename)
     mode = member.external_attr >> 16
     return (
-        not name.is_absolute()
+        bool(name.parts)
+        and member.filename.isprintable()
+        and not name.is_absolute()
         and ".." not in name.parts
         and not any(sign in member.filename for sign in "\\:\0")
         and (stat.S_IFMT(mode) in (0, stat.S_IFREG))
@@ -214,7 +234,12 @@ def _is_plain(member: ZipInfo) -> bool:
 def _check_free_space(members: Sequence[ZipInfo], root: Path, archive: Path) -> None:
     root.mkdir(parents=True, exist_ok=True)
     needed, free = sum(member.file_size for member in members), shutil.disk_usage(root).free
-    if needed > free:
+    if needed > max(_MOST_UNPACKED * archive.stat().st_size, _SMALL_BYTES):
+        raise InputError(
+            f"{archive} would unpack to {needed / 1e6:.0f} MB, which no session of its size does; it is not "
+            "unpacked."
+        )
+    if needed > _MOST_OF_FREE * free:
         raise InputError(
             f"{archive} needs {needed / 1e6:.0f} MB, but the disk of {root} has {free / 1e6:.0f} MB left; "
             "free some space."

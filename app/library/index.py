@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import threading
 from collections.abc import Sequence
 from contextlib import suppress
@@ -13,6 +14,8 @@ from pydantic import TypeAdapter, ValidationError
 from app.library.session_folder import fingerprint, is_session, thumbnail_fact
 from app.library.summary import SessionSummary, summarize
 from core.errors import SessionError
+from core.files import read_content
+from core.formats import is_text
 from core.session import explained
 from core.session.locking import SessionLock
 
@@ -83,7 +86,7 @@ class Library:
             raise SessionError(f"{folder} is no session; give the folder of a session.")
         with self._lock:
             remembered = self._read_remembered()
-            if folder.parent not in self._roots and folder not in remembered:
+            if folder.parent not in self._roots and folder not in remembered and is_text(str(folder)):
                 self._write_remembered([*remembered, folder])
 
     def forget(self, path: Path) -> None:
@@ -102,7 +105,7 @@ class Library:
         inside = [folder for root in self._roots for folder in _children(root) if is_session(folder)]
         remembered = self._read_remembered()
         # A whole folder that is missing may be a disk that is not plugged in.
-        kept = [folder for folder in remembered if folder.exists() or not folder.parent.exists()]
+        kept = [folder for folder in remembered if _exists(folder) or not _exists(folder.parent)]
         if kept != remembered:
             with suppress(SessionError):
                 self._write_remembered(kept)
@@ -110,17 +113,19 @@ class Library:
 
     def _read_index(self) -> _Index:
         try:
-            return _INDEX.validate_json((self._home / INDEX_FILE).read_bytes())
+            return _INDEX.validate_json(read_content(self._home / INDEX_FILE))
         except (OSError, ValidationError):  # missing, damaged or of another version: it is rebuilt
             return {}
 
     def _write_index(self) -> None:
+        # A path that is not UTF-8 cannot be written: such a session is read again each time.
+        known = {path: entry for path, entry in (self._entries or {}).items() if is_text(path)}
         with suppress(OSError, SessionError):  # then the next start takes longer
-            self._write(INDEX_FILE, _INDEX.dump_json(self._entries or {}))
+            self._write(INDEX_FILE, _INDEX.dump_json(known))
 
     def _read_remembered(self) -> list[Path]:
         try:
-            return _PATHS.validate_json((self._home / REMEMBERED_FILE).read_bytes())
+            return _PATHS.validate_json(read_content(self._home / REMEMBERED_FILE))
         except (OSError, ValidationError):
             return []
 
@@ -179,6 +184,14 @@ def _children(root: Path) -> list[Path]:
         return [path for path in root.iterdir() if not path.name.startswith(".") and path.is_dir()]
     except OSError:  # not there yet, or not ours to read: then it holds no sessions
         return []
+
+
+def _exists(folder: Path) -> bool:
+    """Whether it is there; yes, too, if that cannot be known."""
+    try:
+        return folder.exists()
+    except (OSError, ValueError) as error:
+        return getattr(error, "errno", None) == errno.EACCES
 
 
 def _newest_first(entries: _Index) -> tuple[SessionSummary, ...]:

@@ -9,11 +9,13 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
-from core.errors import InputError
+from core.errors import InputError, SessionError
 from core.files import read_json, write_json
-from core.parameters import Parameters, difference, load_preset
+from core.parameters import PRESET_NAMES, Parameters, apply_settings, difference, load_preset
 from core.session import Session, explained
 from core.session.header import HEADER_FILE, Header, has_records
 from core.session.operator_choice import CHOICE_FILE
@@ -25,13 +27,14 @@ THUMBNAIL_FILE = ".thumbnail.png"
 UNFINISHED_SCAN = "scan-in-progress"
 """The folder for views of a scan that is not finished."""
 PARAMETERS_FILE = "parameters.json"
+_PRESET_VALUES = "preset_parameters"
 
 
 def is_session(folder: Path) -> bool:
     """Whether a folder is a session, even a damaged one."""
     try:
         return (folder / HEADER_FILE).is_file() or has_records(folder)
-    except OSError:  # not ours to look into
+    except (OSError, ValueError):  # not ours to look into, or no path at all
         return False
 
 
@@ -81,8 +84,7 @@ def _visible(folder: Path) -> list[os.DirEntry[str]]:
 
 
 def _fact(entry: os.DirEntry[str]) -> str:
-    found = entry.stat()
-    return f"{entry.path} {found.st_mtime_ns} {found.st_size}"
+    return _fact_of(Path(entry.path))  # a link may lead nowhere
 
 
 def _fact_of(path: Path) -> str:
@@ -114,14 +116,38 @@ def remove_if_empty(folder: Path) -> None:
 
 
 def remember_parameters(session: Path, preset: str, parameters: Parameters) -> None:
-    """Store what differs from the defaults, and the preset's name, in the session's folder.
+    """Store what differs from the defaults, and the preset, in the session's folder.
+
+    Of a preset in a file its values are stored, too: the file may be moved, or the session go elsewhere.
 
     Raises:
         SessionError: the folder cannot be written.
     """
-    changes = {name: value for name, (_, value) in difference(parameters, Parameters()).items()}
+    table: dict[str, Any] = {"preset": preset, "parameters": _changes(parameters)}
+    name, base = preset_of(session, preset)
+    if preset not in PRESET_NAMES and name == preset:
+        table[_PRESET_VALUES] = _changes(base)
     with explained(session):
-        write_json(session / PARAMETERS_FILE, {"preset": preset, "parameters": changes})
+        write_json(session / PARAMETERS_FILE, table)
+
+
+def preset_of(session: Path, preset: str) -> tuple[str, Parameters]:
+    """Return a preset's name and values: its own, or what the session stored of a file that is gone.
+
+    Where neither is to be had, they are those of the defaults.
+    """
+    with suppress(InputError):
+        return preset, load_preset(preset)
+    with suppress(InputError, SessionError):
+        table = read_json(session / PARAMETERS_FILE)
+        values = table.get(_PRESET_VALUES)
+        if table.get("preset") == preset and isinstance(values, dict):
+            return preset, apply_settings(Parameters(), values)
+    return "default", Parameters()
+
+
+def _changes(parameters: Parameters) -> dict[str, Any]:
+    return {name: value for name, (_, value) in difference(parameters, Parameters()).items()}
 
 
 def remembered_parameters(session: Path) -> tuple[str, Parameters] | None:
@@ -133,4 +159,5 @@ def remembered_parameters(session: Path) -> tuple[str, Parameters] | None:
     path = session / PARAMETERS_FILE
     if not path.is_file():
         return None
-    return str(read_json(path).get("preset", "default")), load_preset(str(path))
+    preset = read_json(path).get("preset")
+    return preset if isinstance(preset, str) else "default", load_preset(str(path))

@@ -10,6 +10,7 @@ from pathlib import Path
 from app.library.session_folder import UNFINISHED_SCAN, size_bytes
 from app.library.thumbnail import current_thumbnail
 from core.errors import PoursightError
+from core.formats import excerpt
 from core.pipeline.session_view import SessionView
 from core.session import StageRecord
 from core.session.pour_runs import pour_runs
@@ -48,7 +49,7 @@ class SessionSummary:
         stages: finished ones that belong together, in the order of the work.
         size_bytes: on the disk.
         thumbnail: a picture of 320 x 240; None if it has yet to be made.
-        problem: why it cannot be read, as a sentence.
+        problem: why it, or a pour in it, cannot be read, as a sentence.
     """
 
     path: Path
@@ -84,7 +85,7 @@ class SessionSummary:
         """When it was made, in this computer's time zone; None if that cannot be read."""
         try:
             return datetime.fromisoformat(self.created).astimezone()
-        except ValueError:
+        except (OverflowError, ValueError):
             return None
 
 
@@ -97,8 +98,8 @@ def summarize(folder: Path) -> SessionSummary:
         return _unreadable(folder, str(error))
     except OSError as error:
         return _unreadable(folder, f"{error.filename} cannot be read ({error.strerror}); make it readable.")
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        said = f"The session {folder} is damaged ({error!r}); run its stages again or delete it."
+    except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
+        said = f"The session {folder} is damaged ({excerpt(repr(error))}); run its stages again or delete it."
         return _unreadable(folder, said)
 
 
@@ -130,6 +131,7 @@ def _summarize(folder: Path) -> SessionSummary:
         stages=tuple(view.records),
         size_bytes=size_bytes(folder),
         thumbnail=current_thumbnail(folder, view.records),
+        problem=next((run.problem for run in runs if run.problem), ""),
     )
 
 

@@ -6,11 +6,13 @@ Heavy imports come late: a list of sessions only asks whether there is a picture
 from __future__ import annotations
 
 from collections.abc import Mapping
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.library.session_folder import THUMBNAIL_FILE
 from core.errors import SessionError
+from core.files import read_content
 from core.pipeline.session_view import current_records
 from core.session import StageRecord, explained
 
@@ -75,7 +77,6 @@ def _source(session: Path, records: Mapping[str, StageRecord]) -> Path | None:
 
 def _draw(source: Path) -> Image:
     from PIL import Image
-    from PIL.Image import DecompressionBombError
 
     if source.suffix == ".ply":
         from app.library.shading import shaded_picture
@@ -83,9 +84,9 @@ def _draw(source: Path) -> Image:
 
         return shaded_picture(read_ply(source), SIZE_PX)
     try:
-        with Image.open(source) as picture:
+        with Image.open(BytesIO(read_content(source))) as picture:
             return _cropped(picture.convert("RGB"), source)
-    except (OSError, SyntaxError, ValueError, DecompressionBombError) as error:
+    except Exception as error:  # Pillow raises another kind for each way in which a picture can be damaged
         raise SessionError(f"{source} cannot be read; run the stage that writes it again.") from error
 
 

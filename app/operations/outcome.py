@@ -6,12 +6,13 @@ from pathlib import Path
 
 from app.operations.scanning import object_mesh
 from core.errors import InputError
+from core.files import reading
 from core.mesh import TriangleMesh
 from core.motion.pour.plan import PourPlan
 from core.pipeline.pipeline import Pipeline
 from core.session import explained
 from core.session.cups import cup_of_run
-from core.session.pour_runs import Outcome, pour_runs, write_outcome
+from core.session.pour_runs import STATES_FILE, Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings
 from hardware.cell.settings import ARMS
 from hardware.pouring.pouring import PLAN_FOLDER
@@ -32,7 +33,8 @@ def simulated_outcome(pipeline: Pipeline, settings: CellSettings, folder: Path) 
     Of several cups, those poured before lie in the object.
     """
     plan = PourPlan.load(folder / PLAN_FOLDER)
-    states = read_states(folder, {move.name for move in plan.moves if move.holds_cup})
+    with reading(folder / STATES_FILE):
+        states = read_states(folder, {move.name for move in plan.moves if move.holds_cup})
     T_flange_cup = settings.gripper.grasp_pose @ plan.T_grasp_cup
     path = driven_path(ARMS[settings.robot.model], states.times_s, states.joints_rad, T_flange_cup)
     parameters, place = pipeline.poured_parameters(), settings.place

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.library.session_folder import remember_parameters, remembered_parameters
+from app.library.session_folder import preset_of, remember_parameters, remembered_parameters
 from core.parameters import Parameters
 from core.progress import Reporter
 from core.session import Session
@@ -52,7 +52,7 @@ def working_on(
 
     with (Session.open if is_existing else Session.create_or_open)(task.folder) as session:
         remember_parameters(session.path, task.preset, task.parameters)
-        yield Pipeline(session, task.parameters, pool, reporter, task.preset)
+        yield Pipeline(session, task.parameters, pool, reporter, *preset_of(session.path, task.preset))
 
 
 def bring_report_up_to_date(session: Path, reporter: Reporter, workers: int | None = None) -> Path | None:

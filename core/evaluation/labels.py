@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-import csv
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
 from core.errors import InputError
+from core.files import is_file, read_csv, reason
+from core.formats import excerpt
 
 Label = Literal["container", "non-container", "ambiguous"]
 LABELS: tuple[Label, ...] = get_args(Label)
 MESHES_FOLDER = "meshes"
 ANSWER_COLUMNS = ("object", "annotator", "contains", "pourable")
 _ENDINGS = (".obj", ".ply", ".stl", ".off", ".glb")
+_LONGEST_NAME = 200
+"""Bytes: endings and numbers come to it, and a file's name has 255 at most."""
 _YES, _NO = ("1", "yes", "true", "y"), ("0", "no", "false", "n")
 
 _Row = Mapping[str, str | None]
@@ -78,21 +82,19 @@ def read_labels(folder: Path, labels: Path | None = None) -> tuple[LabelledObjec
     """
     path = labels or _only_csv(folder)
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            rows = list(csv.DictReader(file))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        columns, rows = read_csv(path)
+    except (OSError, ValueError) as error:
         raise InputError(
-            f"The labels {path} cannot be read ({error}); give a CSV with id and label."
+            f"The labels {path} cannot be read ({reason(error)}); give a CSV in UTF-8 with id and label."
         ) from error
     if not rows:
         raise InputError(f"The labels {path} name no object; give a row with id and label for each.")
-    if all(column in rows[0] for column in ANSWER_COLUMNS):
+    if all(column in columns for column in ANSWER_COLUMNS):
         return _from_answers(folder, path, rows)
     objects = tuple(_object(folder, row, _text(row, "id"), _label(path, row)) for row in rows)
-    names = [one.name for one in objects]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise InputError(f"The labels {path} name the object '{twice}' twice; leave one of the rows out.")
+    ((name, times),) = Counter(one.name for one in objects).most_common(1)
+    if times > 1:
+        raise InputError(f"The labels {path} name the object '{name}' twice; leave one of the rows out.")
     return objects
 
 
@@ -133,6 +135,11 @@ def _only_csv(folder: Path) -> Path:
 def _object(
     folder: Path, row: _Row, name: str, label: Label, agreement: Agreement | None = None
 ) -> LabelledObject:
+    if not _is_plain(name):
+        raise InputError(
+            f"The object '{excerpt(name)}' of {folder} cannot have that name: it becomes the name of files; "
+            "use letters, digits and hyphens."
+        )
     return LabelledObject(
         name,
         label,
@@ -149,7 +156,7 @@ def _label(path: Path, row: _Row) -> Label:
     label = next((one for one in LABELS if one == _text(row, "label")), None)
     if label is None or not _text(row, "id"):
         raise InputError(
-            f"In {path}, the row {dict(row)} cannot be used: it needs an id, and a label that is one of "
+            f"In {path}, the row {excerpt(row)} cannot be used: it needs an id, and a label that is one of "
             f"{', '.join(LABELS)}."
         )
     return label
@@ -162,9 +169,11 @@ def _from_answers(folder: Path, path: Path, rows: Sequence[_Row]) -> tuple[Label
         name, annotator = _text(row, "object"), _text(row, "annotator")
         answers = [_answer(path, row, column) for column in ("contains", "pourable")]
         if not name or not annotator:
-            raise InputError(f"In {path}, the row {dict(row)} lacks the object or the annotator.")
+            raise InputError(f"In {path}, the row {excerpt(row)} lacks the object or the annotator.")
         if annotator in votes.setdefault(name, {}):
-            raise InputError(f"In {path}, '{annotator}' answers twice about '{name}'; leave one row out.")
+            raise InputError(
+                f"In {path}, '{excerpt(annotator)}' answers twice about '{excerpt(name)}'; leave one row out."
+            )
         votes[name][annotator] = all(answers)
     first_rows = {_text(row, "object"): row for row in reversed(rows)}
     objects = []
@@ -172,8 +181,8 @@ def _from_answers(folder: Path, path: Path, rows: Sequence[_Row]) -> tuple[Label
         agreement = Agreement(sum(by_annotator.values()), len(by_annotator))
         if 2 * agreement.n_container == agreement.n_asked:
             raise InputError(
-                f"In {path}, the {agreement.n_asked} answers about '{name}' are split evenly; ask one more "
-                "person, or give labels instead of answers."
+                f"In {path}, the {agreement.n_asked} answers about '{excerpt(name)}' are split evenly; "
+                "ask one more person, or give labels instead of answers."
             )
         label: Label = "container" if agreement.is_container else "non-container"
         objects.append(_object(folder, first_rows[name], name, label, agreement))
@@ -184,7 +193,7 @@ def _answer(path: Path, row: _Row, column: str) -> bool:
     text = _text(row, column).lower()
     if text not in _YES + _NO:
         raise InputError(
-            f"In {path}, '{text}' in the column {column} is no answer; write 1 or 0 (or yes or no)."
+            f"In {path}, '{excerpt(text)}' in the column {column} is no answer; write 1 or 0 (or yes or no)."
         )
     return text in _YES
 
@@ -200,4 +209,15 @@ def _is_marked(row: _Row, column: str) -> bool:
 def _mesh(folder: Path, name: str) -> Path:
     """The object's file; where there is none, where it should be: judging it then says so."""
     places = [place / f"{name}{ending}" for place in (folder / MESHES_FOLDER, folder) for ending in _ENDINGS]
-    return next((path for path in places if path.is_file()), places[0])
+    return next((path for path in places if is_file(path)), places[0])
+
+
+def _is_plain(name: str) -> bool:
+    """Whether a name is fit for a file in any folder; a folder within that of the objects may precede it."""
+    parts = name.split("/")
+    return (
+        len(name.encode("utf-8", "replace")) <= _LONGEST_NAME
+        and name.isprintable()
+        and "\\" not in name
+        and not any(part in ("", ".", "..") for part in parts)
+    )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,8 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from core.errors import InputError
+from core.files import is_file, read_content, reason
+from core.formats import excerpt, parse_json
 from core.parameters.fields import Group
 from core.parameters.model import Parameters
 from core.resources import RESOURCES
@@ -87,7 +88,9 @@ def apply_settings(parameters: G, settings: Mapping[str, Any]) -> G:
     tree = parameters.model_dump()
     for name, value in settings.items():
         if name not in known:
-            raise InputError(f"There is no parameter '{name}'; did you mean '{nearest(name, known)}'?")
+            raise InputError(
+                f"There is no parameter '{excerpt(name)}'; did you mean '{nearest(excerpt(name), known)}'?"
+            )
         *groups, leaf = name.split(".")
         branch = tree
         for group in groups:
@@ -115,7 +118,7 @@ def _parse(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     try:
-        return json.loads(value)
+        return parse_json(value.encode())
     except ValueError:
         return value
 
@@ -151,7 +154,7 @@ def _explain(error: ValidationError, known: Iterable[FieldFacts]) -> str:
         return f"The parameters in '{name}' do not fit together: {said}."
     allowed = facts[name].range_text
     hint = f"; allowed is {allowed}" if allowed else f": {said}"
-    return f"{name} = {first['input']!r} is not possible{hint}."
+    return f"{name} = {excerpt(repr(first['input']))} is not possible{hint}."
 
 
 PRESET_FOLDER = RESOURCES / "presets"
@@ -168,20 +171,22 @@ def load_preset(name_or_file: str) -> Parameters:
         return Parameters()
     if name_or_file in PRESET_NAMES:
         return apply_settings(Parameters(), _read(PRESET_FOLDER / f"{name_or_file}.json"))
-    if Path(name_or_file).is_file():
+    if is_file(Path(name_or_file)):
         return apply_settings(Parameters(), _read(Path(name_or_file)))
+    said = excerpt(name_or_file)
     raise InputError(
-        f"There is no preset '{name_or_file}'; did you mean '{nearest(name_or_file, PRESET_NAMES)}'? "
+        f"There is no preset '{said}'; did you mean '{nearest(said, PRESET_NAMES)}'? "
         f"Known are {', '.join(PRESET_NAMES)}, or give a preset file."
     )
 
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        settings = json.loads(path.read_text(encoding="utf-8"))["parameters"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        settings = parse_json(read_content(path))["parameters"]
+    except (OSError, ValueError, LookupError, TypeError) as error:
         raise InputError(
-            f"The preset file {path} cannot be read ({error!r}); it must be JSON with a table 'parameters'."
+            f"The preset file {path} cannot be read ({reason(error)}); "
+            "it must be JSON with a table 'parameters'."
         ) from error
     if not isinstance(settings, dict):
         raise InputError(f"In the preset file {path}, 'parameters' must be a table of names and values.")

@@ -10,7 +10,8 @@ from typing import Any
 
 from core.collision import CollisionModel
 from core.errors import Remedy, SessionError, StageError
-from core.files import read_json, write_json
+from core.files import read_json, reading, write_json
+from core.formats.tables import Warnings
 from core.imagination.amount.reasoning import is_one_cup_asked_for
 from core.imagination.context import ImaginationContext
 from core.imagination.imagination import Imagination
@@ -73,13 +74,24 @@ class Pipeline:
         pool: WorkerPool,
         reporter: Reporter,
         preset: str = "default",
+        base: Parameters | None = None,
     ) -> None:
-        """`preset` is what the parameters started from; the report shows the difference."""
+        """`preset` names what the parameters started from; the report shows the difference.
+
+        Args:
+            session: to work on.
+            parameters: of all stages.
+            pool: runs what is computed.
+            reporter: shows progress.
+            preset: its name or file.
+            base: its parameters; none: they are read by its name.
+        """
         self.session = session
         self.parameters = parameters
         self.reporter = _Keeping(reporter)
         self.pool = pool
         self._preset = preset
+        self._base = base
         self._tools = Tools(pool, self.reporter)
         self._known: dict[str, tuple[str, Any]] = {}
 
@@ -202,7 +214,7 @@ class Pipeline:
         is_scan = source_of(self.session) != MESH
         content = gather(
             self.session,
-            (self._preset, load_preset(self._preset)),
+            (self._preset, load_preset(self._preset) if self._base is None else self._base),
             self.parameters,
             self.surface(),
             self.reconstruction() if is_scan else None,
@@ -221,8 +233,12 @@ class Pipeline:
         found: list[str] = []
         for name in STAGE_NAMES:
             path = self.session.path / name / WARNINGS_FILE
-            if path.is_file():
-                found += read_json(path)["warnings"]
+            if not path.exists():
+                continue
+            try:
+                found += read_json(path, Warnings)["warnings"]
+            except SessionError as error:
+                found.append(f"{error} What the stage '{name}' wanted to be known is missing here.")
         return found
 
     def result(self, name: str) -> Any:
@@ -245,6 +261,9 @@ class Pipeline:
         record = self.session.record(name)
         if record is not None and is_fresh(self.session, record, digests, settings):
             return
+        self._run(name, digests, settings)
+
+    def _run(self, name: str, digests: dict[str, str], settings: dict[str, Any]) -> None:
         started = perf_counter()
         result = RUNS[name].run(self._given(name))
         seconds = perf_counter() - started
@@ -255,11 +274,27 @@ class Pipeline:
         self._known[name] = self._record(name).digest, result
 
     def _loaded(self, name: str) -> Any:
-        """Return the result that a stage's folder holds; what was just computed or read is not read again."""
-        digest = self._record(name).digest
-        if name not in self._known or self._known[name][0] != digest:
-            self._known[name] = digest, RUNS[name].load(self.session.folder(name))
+        """Return the result that a stage's folder holds; what was just computed or read is not read again.
+
+        What was damaged since it was computed is computed again; what was given cannot be.
+        """
+        record = self._record(name)
+        if name not in self._known or self._known[name][0] != record.digest:
+            try:
+                self._known[name] = record.digest, self._read(name, record)
+            except SessionError as error:
+                if name in GIVEN:
+                    raise
+                self.reporter.warn(f"{error} It is made anew.")
+                self._run(name, record.inputs, record.parameters)
         return self._known[name][1]
+
+    def _read(self, name: str, record: StageRecord) -> Any:
+        folder = self.session.folder(name)
+        if name not in GIVEN and not record.is_unchanged(folder):
+            raise SessionError(f"The files in {folder} are not those that were written.")
+        with reading(folder):
+            return RUNS[name].load(folder)
 
     def _given(self, name: str) -> Given:
         part = stage(name).part(self.parameters)

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import io
+from io import BytesIO
 from pathlib import Path
 
+from core.files import read_content
 from core.imagination.imagination import Imagination
 from core.imagination.rendering.evidence import Evidence
 from core.mesh import TriangleMesh
@@ -83,9 +84,14 @@ def _thumbnails(folder: Path) -> dict[str, Media]:
 
     pictures: dict[str, Media] = {}
     for path in sorted(folder.glob("frame-*.color.png")):
-        buffer = io.BytesIO()
-        with Image.open(path) as image:
-            image.thumbnail(_THUMBNAIL_PX)
-            image.convert("RGB").save(buffer, "JPEG", quality=80)
-        pictures[path.name.split(".")[0]] = buffer.getvalue()
+        buffer = BytesIO()
+        name = path.name.split(".")[0]
+        try:
+            with Image.open(BytesIO(read_content(path))) as image:
+                image.thumbnail(_THUMBNAIL_PX)
+                image.convert("RGB").save(buffer, "JPEG", quality=80)
+        except Exception:  # Pillow raises another kind for each way in which a picture can be damaged
+            pictures[name] = path  # the page says that it cannot be shown
+        else:
+            pictures[name] = buffer.getvalue()
     return pictures

@@ -6,15 +6,14 @@ still what was found.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from core.errors import InputError, Remedy, SessionError
-from core.files import read_json
+from core.files import read_json, reading
 from core.imagination.amount.result import AMOUNT_FILE, Amount, PlannedAmount
 from core.imagination.choice import choose_pour
 from core.imagination.judgement import Judgement
@@ -25,7 +24,7 @@ from core.motion.pour.feasibility import MOTION_FILE, PourMotions
 from core.parameters import Parameters, apply_settings
 from core.pipeline.freshness import finished_records
 from core.session import Session, StageRecord
-from core.session.operator_choice import OperatorChoice, read_operator_choice
+from core.session.operator_choice import OperatorChoice, damaged_choice, read_operator_choice
 from core.stages import MESH, recorded_settings
 
 IMAGINED = ("containability", "judgement", "amount", "pouring", "risk")
@@ -118,7 +117,7 @@ class SessionView:
         drop, judged = read_json(path), self._judgement_table()
         if judged is None:
             return None
-        with _explained(path):
+        with reading(path):
             verdict = None if judged.get("verdict") is None else Verdict.from_table(judged["verdict"])
             omega, threshold = float(drop["omega"]), float(judged["omega_threshold"])
             is_container = omega > threshold if verdict is None else verdict.is_container
@@ -134,7 +133,7 @@ class SessionView:
             return None
         path = self._path("pouring") / POURS_FILE
         table = read_json(path)
-        with _explained(path):
+        with reading(path):
             return PoursFacts(
                 record.digest,
                 int(table["n_pour"]),
@@ -142,14 +141,20 @@ class SessionView:
                 tuple(tuple(map(float, row)) for row in table["p"]),
                 tuple(map(float, table["theta_rad"])),
                 tuple(map(float, table["indent_m"])),
-                self._choice_place(),
+                self._choice_place(len(table["theta_rad"]), len(table["indent_m"])),
             )
 
     @cached_property
     def operator(self) -> OperatorChoice | None:
         """What a person chose among these pours; none if nobody did."""
         record = self.records.get("pouring")
-        return None if record is None else read_operator_choice(self.session.path, record.digest)
+        chosen = None if record is None else read_operator_choice(self.session.path, record.digest)
+        if chosen is not None and self.pours is not None:
+            try:
+                check_place(chosen.i, chosen.j, len(self.pours.p), len(self.pours.indent_m))
+            except ValueError as error:
+                raise damaged_choice(self.session.path) from error
+        return chosen
 
     @property
     def place(self) -> tuple[int, int] | None:
@@ -173,7 +178,7 @@ class SessionView:
         if table is None:
             return None
         folder = self._path("judgement" if "judgement" in self.records else "containability")
-        with _explained(folder):
+        with reading(folder):
             return Judgement.from_table(table, folder)
 
     @cached_property
@@ -182,7 +187,7 @@ class SessionView:
         if "containability" not in self.records or self.judgement is None:
             return None
         folder = self._path("containability")
-        with _explained(folder):
+        with reading(folder):
             return self.judgement.of(Drop.load(folder))
 
     @cached_property
@@ -191,7 +196,7 @@ class SessionView:
         if self.pours is None:
             return None
         folder = self._path("pouring")
-        with _explained(folder):
+        with reading(folder):
             return PourGrid.load(folder)
 
     @cached_property
@@ -200,7 +205,7 @@ class SessionView:
         if not self._has_choice:
             return None
         folder = self._tries_folder
-        with _explained(folder):
+        with reading(folder):
             return Tries.load(folder)
 
     @cached_property
@@ -215,7 +220,7 @@ class SessionView:
         if "motion" not in self.records or MOTION_FILE not in self.records["motion"].files:
             return None
         folder = self._path("motion")
-        with _explained(folder):
+        with reading(folder):
             return PourMotions.load(folder)
 
     def parameters_of(self, name: str) -> Parameters:
@@ -259,12 +264,25 @@ class SessionView:
         record = self.records.get("risk") or self.records.get("pouring")
         return record is not None and "choice.json" in record.files
 
-    def _choice_place(self) -> tuple[int, int] | None:
+    def _choice_place(self, n_directions: int, n_distances: int) -> tuple[int, int] | None:
         if self.motions is not None:
             choice = self.motions.choice
         else:
             choice = self.tries.choice if self.tries is not None else None
-        return None if choice is None else (choice.i, choice.j)
+        if choice is None:
+            return None
+        check_place(choice.i, choice.j, n_directions, n_distances)
+        return choice.i, choice.j
+
+
+def check_place(i: int, j: int, n_directions: int, n_distances: int) -> None:
+    """Hold a choice against the pours that there are.
+
+    Raises:
+        ValueError: it is none of them.
+    """
+    if not (0 <= i < n_directions and 0 <= j < n_distances):
+        raise ValueError(f"the chosen pour {i}, {j} is none of {n_directions} x {n_distances}")
 
 
 def current_records(
@@ -285,12 +303,3 @@ def current_records(
 
 def _is_made_from(inputs: Mapping[str, str], current: Mapping[str, StageRecord]) -> bool:
     return all(name in current and current[name].digest == digest for name, digest in inputs.items())
-
-
-@contextmanager
-def _explained(path: Path) -> Iterator[None]:
-    """Turn what a damaged file raises into a sentence that names it."""
-    try:
-        yield
-    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
-        raise SessionError(f"{path} is damaged ({error!r}).", Remedy.RUN_AGAIN) from error

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from io import BytesIO
 
+from core.files import read_content
 from core.report.content import Media
 
 _WIDE = 1.6
@@ -39,13 +40,13 @@ def data_uri(kind: str, content: bytes) -> str:
 
 
 def _embed_picture(caption: str, media: Media) -> Figure:
-    from PIL import Image, UnidentifiedImageError
+    from PIL import Image
 
     try:
         content = _read(media)
         with Image.open(BytesIO(content)) as image:
             kind, (width, height) = Image.MIME[image.format or ""], image.size
-    except (OSError, KeyError, UnidentifiedImageError) as error:
+    except Exception as error:  # Pillow raises another kind for each way in which a picture can be damaged
         return _missing(caption, "picture", error)
     return Figure(caption, data_uri(kind, content), is_wide=width > _WIDE * height)
 
@@ -63,4 +64,4 @@ def _missing(caption: str, what: str, error: Exception) -> Figure:
 
 
 def _read(media: Media) -> bytes:
-    return media if isinstance(media, bytes) else media.read_bytes()
+    return media if isinstance(media, bytes) else read_content(media)

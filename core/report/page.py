@@ -181,7 +181,7 @@ def _reconstruction_data(content: ReportContent) -> dict[str, Any]:
 def _readable_time(created: str) -> str:
     try:
         return datetime.fromisoformat(created).astimezone(timezone.utc).strftime("%d %B %Y, %H:%M UTC")
-    except ValueError:
+    except (OverflowError, ValueError):
         return created
 
 

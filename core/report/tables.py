@@ -219,7 +219,7 @@ def run_rows(runs: Sequence[PourRun]) -> list[tuple[str, str, str]]:
     return [
         (
             _clock(run.begun),
-            f"{run.sentence} {run.note}".rstrip(),
+            " ".join(filter(None, (run.sentence, run.note, run.problem))),
             "" if run.is_back_off else _outcome_sentence(run),
         )
         for run in runs

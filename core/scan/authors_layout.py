@@ -20,7 +20,8 @@ import numpy as np
 from PIL import Image
 
 from core.errors import InputError, SessionError
-from core.files import write_whole
+from core.files import read_content, reason, write_whole
+from core.formats import parse_json
 from core.geometry import AnyArray
 from core.progress import Reporter
 from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
@@ -189,9 +190,9 @@ def read_facts(path: Path) -> tuple[float | None, CropBox | None]:
     if not path.exists():
         return None, None
     try:
-        facts = dict(json.loads(path.read_text(encoding="utf-8")).items())
-    except (OSError, ValueError, AttributeError, RecursionError) as error:
-        raise InputError(f"{path} cannot be read ({error}); correct it or delete it.") from error
+        facts = dict(parse_json(read_content(path)).items())
+    except (OSError, ValueError, AttributeError) as error:
+        raise InputError(f"{path} cannot be read ({reason(error)}); correct it or delete it.") from error
     return _platform_height(facts.get("platform_height_m"), path), _crop_box(facts, path)
 
 

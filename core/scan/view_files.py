@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, UnidentifiedImageError
 
 from core.errors import InputError
+from core.files import read_content, reason
 from core.geometry import AnyArray, FloatArray, rotation_error
 from core.scan.model import ColorImage, DepthImage, Intrinsics
 
@@ -64,13 +66,13 @@ def depth_to_millimetres(depth_m: DepthImage) -> AnyArray:
 
 def _decode(path: Path, *, to_rgb: bool) -> tuple[str, AnyArray]:
     try:
-        with Image.open(path) as image:
+        with Image.open(BytesIO(read_content(path))) as image:
             mode = image.mode
             return mode, np.asarray(image.convert("RGB") if to_rgb else image)
     except Exception as error:  # Pillow raises a different kind for each way in which a file can be damaged
-        reason = "it is not an image" if isinstance(error, UnidentifiedImageError) else str(error)
+        why = "it is not an image" if isinstance(error, UnidentifiedImageError) else reason(error)
         raise InputError(
-            f"The image {path} cannot be read ({reason}); copy it again or delete the view's three files."
+            f"The image {path} cannot be read ({why}); copy it again or delete the view's three files."
         ) from error
 
 
@@ -129,16 +131,18 @@ def matrix_text(matrix: FloatArray) -> str:
 
 def _read_matrix(path: Path, size: int, what: str) -> FloatArray:
     try:
-        rows = [line.split() for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
+        rows = [line.split() for line in read_content(path).decode("utf-8").splitlines() if line.strip()]
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"The {what} in {path} cannot be read ({error}); copy the file again.") from error
+        raise InputError(
+            f"The {what} in {path} cannot be read ({reason(error)}); copy the file again."
+        ) from error
     if [len(row) for row in rows] != [size] * size:
         raise InputError(f"{path} must hold a {size}x{size} {what}, {size} numbers in each of {size} lines.")
     try:
         values = [[float(word) for word in row] for row in rows]
     except ValueError as error:
         raise InputError(
-            f"The {what} in {path} contains something that is not a number ({error}); "
+            f"The {what} in {path} contains something that is not a number ({reason(error)}); "
             f"write {size}x{size} numbers."
         ) from error
     if not all(math.isfinite(value) for row in values for value in row):

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from core.errors import Remedy, SessionError
-from core.files import write_json
+from core.files import read_content, reason, write_json
+from core.formats import excerpt, parse_json
 from core.session.record import RECORD_FILE, utc_now
 
 FORMAT = 1
@@ -44,13 +44,13 @@ class Header:
         number = table.get("format")
         if isinstance(number, int) and number > FORMAT:
             raise SessionError(
-                f"The session {folder} was made by a newer Poursight (format {number}, this one knows "
-                f"{FORMAT}); update Poursight to open it."
+                f"The session {folder} was made by a newer Poursight (format {excerpt(number)}, "
+                f"this one knows {FORMAT}); update Poursight to open it."
             )
         name, created = table.get("name"), table.get("created")
         if number != FORMAT or not isinstance(name, str) or not isinstance(created, str):
             raise _damaged(folder / HEADER_FILE, "format, name or created is missing")
-        return cls(name, created)
+        return cls(excerpt(name), excerpt(created))
 
 
 def has_records(folder: Path) -> bool:
@@ -60,11 +60,11 @@ def has_records(folder: Path) -> bool:
 
 def _read_table(path: Path) -> dict[str, Any]:
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
+        table = parse_json(read_content(path))
     except OSError as error:
-        raise SessionError(f"{path} cannot be read ({error.strerror}); make it readable.") from error
-    except (ValueError, RecursionError) as error:
-        raise _damaged(path, str(error)) from error
+        raise SessionError(f"{path} cannot be read ({reason(error)}); make it readable.") from error
+    except ValueError as error:
+        raise _damaged(path, reason(error)) from error
     if not isinstance(table, dict):
         raise _damaged(path, "it holds no table")
     return table

@@ -9,6 +9,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from core.errors import SessionError
+from core.files import read_content, write_whole
 from core.session.explaining import explained
 
 
@@ -42,7 +43,7 @@ class SessionLock:
                 "close it first."
             ) from None
         with suppress(OSError):  # a courtesy to whom the lock will refuse
-            self._writer.write_text(str(os.getpid()), encoding="ascii")
+            write_whole(self._writer, str(os.getpid()))
 
     def release(self) -> None:
         """Give the lock back."""
@@ -52,7 +53,7 @@ class SessionLock:
 
     def _holder(self) -> str:
         try:
-            number = self._writer.read_text(encoding="ascii").strip()
+            number = read_content(self._writer).decode("ascii").strip()
         except (OSError, ValueError):
             return ""
         return f" (process {number})" if number.isdigit() else ""

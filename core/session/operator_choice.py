@@ -7,6 +7,7 @@ from pathlib import Path
 
 from core.errors import InputError, SessionError
 from core.files import read_json, write_json
+from core.formats.tables import OperatorChoice as ChoiceTable
 from core.session.explaining import explained
 from core.session.record import utc_now
 
@@ -58,12 +59,9 @@ def read_operator_choice(session: Path, imagination: str) -> OperatorChoice | No
     if not path.is_file():
         return None
     try:
-        choice = OperatorChoice(**read_json(path))
-    except (SessionError, TypeError) as error:
-        raise _damaged(path) from error
-    whole, words = (choice.i, choice.j), (choice.reason, choice.imagination, choice.time)
-    if not all(type(number) is int for number in whole) or not all(isinstance(word, str) for word in words):
-        raise _damaged(path)
+        choice = OperatorChoice(**read_json(path, ChoiceTable))
+    except SessionError as error:
+        raise damaged_choice(session) from error
     return choice if choice.imagination == imagination else None
 
 
@@ -77,7 +75,9 @@ def withdraw_operator_choice(session: Path) -> None:
         (session / CHOICE_FILE).unlink(missing_ok=True)
 
 
-def _damaged(path: Path) -> SessionError:
+def damaged_choice(session: Path) -> SessionError:
+    """Return the error that says what to do about a choice that is none."""
     return SessionError(
-        f"{path}, the pour that the operator chose, is damaged; choose again, or withdraw the choice."
+        f"{session / CHOICE_FILE}, the pour that the operator chose, is damaged; "
+        "choose again, or withdraw the choice."
     )

@@ -5,13 +5,16 @@ A run is no stage: it is written line by line while it happens, so that a crash 
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import Any
 
-from core.files import read_json, write_json
+from core.errors import SessionError
+from core.files import read_content, read_json, reason, write_json
+from core.formats import check_table, parse_json
+from core.formats.tables import Event
+from core.formats.tables import Outcome as OutcomeTable
 from core.session.explaining import explained
 
 RUNS_FOLDER = "pours"
@@ -57,27 +60,26 @@ class PourRun:
         folder: that holds it.
         events: what happened, in its order.
         outcome: what became of the candies; none as long as nobody entered it.
+        problem: what of it is damaged, and what follows; empty if nothing is. A run cannot be made anew, so
+            what is left of it is kept.
     """
 
     folder: Path
     events: tuple[dict[str, Any], ...]
     outcome: Outcome | None
+    problem: str = ""
 
     @classmethod
     def load(cls, folder: Path) -> PourRun:
-        """Read a run's folder."""
-        path = folder / OUTCOME_FILE
-        outcome = None
-        if path.is_file():
-            table = read_json(path)
-            table.pop("entered", None)
-            outcome = Outcome(**table)
-        return cls(folder, tuple(_read_events(folder / EVENTS_FILE)), outcome)
+        """Read a run's folder; what is damaged in it is told by `problem`."""
+        events, of_events = _read_events(folder / EVENTS_FILE)
+        outcome, of_outcome = _read_outcome(folder / OUTCOME_FILE)
+        return cls(folder, tuple(events), outcome, " ".join(filter(None, (of_events, of_outcome))))
 
     @property
     def begun(self) -> str:
         """ISO 8601 time, UTC, of its first event; empty if there is none."""
-        return str(self.events[0]["time"]) if self.events else ""
+        return str(self.events[0].get("time", "")) if self.events else ""
 
     @property
     def imagination(self) -> str:
@@ -114,7 +116,7 @@ class PourRun:
             return "The run ended without a word: the program was ended while the arm moved."
         during = [event.get("sentence", "").split(":")[0] for event in self.events if event["kind"] == "move"]
         where = f" during '{during[-1]}'" if during else " before the first move"
-        return f"Stopped{where}: {stops[-1]['sentence']}"
+        return f"Stopped{where}: {stops[-1].get('sentence', '')}".rstrip(": ")
 
 
 def pour_runs(session: Path) -> list[PourRun]:
@@ -158,12 +160,35 @@ def _run_folders(session: Path) -> list[Path]:
     return sorted(path for path in (session / RUNS_FOLDER).glob("[0-9]*") if path.name.isdigit())
 
 
-def _read_events(path: Path) -> list[dict[str, Any]]:
-    """Read what was written; a last line that a crash cut short is left out."""
+def _read_outcome(path: Path) -> tuple[Outcome | None, str]:
+    """Return what was entered, and what is wrong with it."""
+    if not path.exists():
+        return None, ""
+    try:
+        return Outcome(**read_json(path, OutcomeTable)), ""
+    except SessionError as error:
+        return None, f"{error} Enter the outcome again."
+
+
+def _read_events(path: Path) -> tuple[list[dict[str, Any]], str]:
+    """Return what was written until something is damaged, and what is wrong.
+
+    A last line without its end is what a crash leaves: nothing is wrong with the others.
+    """
     events: list[dict[str, Any]] = []
-    for line in path.read_text(encoding="utf-8").splitlines() if path.is_file() else []:
+    try:
+        lines = read_content(path).splitlines(keepends=True) if path.exists() else []
+    except OSError as error:
+        return events, f"{path} cannot be read ({reason(error)}): what happened is not known."
+    for number, line in enumerate(lines, 1):
         try:
-            events.append(json.loads(line))
-        except ValueError:
-            break
-    return events
+            check_table(line, Event)
+            events.append(parse_json(line))
+        except ValueError as error:
+            if number == len(lines) and not line.endswith(b"\n"):
+                break
+            return (
+                events,
+                f"{path} is damaged in line {number} ({reason(error)}): what came after is not known.",
+            )
+    return events, ""

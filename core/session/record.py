@@ -6,7 +6,7 @@ import hashlib
 import json
 import os
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from datetime import datetime, timezone
 from importlib.metadata import PackageNotFoundError, version
@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import SessionError
-from core.files import read_json, write_json
+from core.files import check_regular, read_json, write_json
+from core.formats.tables import Record
 
 _PACKAGES = {
     "poursight": ("poursight",),
@@ -73,11 +74,16 @@ class StageRecord:
     def load(cls, folder: Path) -> StageRecord | None:
         """Read `record.json`; None when it is missing or damaged: then the stage has to be run again."""
         try:
-            record = cls(**read_json(folder / RECORD_FILE))
-        except (SessionError, TypeError):
+            return cls(**read_json(folder / RECORD_FILE, Record))
+        except SessionError:
             return None
-        tables = (record.inputs, record.parameters, record.files, record.versions)
-        return record if all(isinstance(table, dict) for table in tables) else None
+
+    def is_unchanged(self, folder: Path) -> bool:
+        """Whether its files hold what was written: reads them all; files that came later do not count."""
+        try:
+            return _digest(folder, self.files) == self.digest
+        except OSError:
+            return False
 
     def is_whole(self, folder: Path) -> bool:
         """Whether all its files are there, as long as they were: lost and cut ones are noticed cheaply."""
@@ -132,8 +138,12 @@ def folder_digest(folder: Path) -> str:
 
     Times, owners and the order of creation do not count.
     """
+    return _digest(folder, file_sizes(folder))
+
+
+def _digest(folder: Path, names: Iterable[str]) -> str:
     whole = hashlib.sha256()
-    for name in file_sizes(folder):
+    for name in sorted(names):
         # Both parts have a fixed length, so no two sets of files run together to the same bytes.
         whole.update(hashlib.sha256(os.fsencode(name)).digest())
         whole.update(_file_digest(folder / name))
@@ -141,6 +151,7 @@ def folder_digest(folder: Path) -> str:
 
 
 def _file_digest(path: Path) -> bytes:
+    check_regular(path)
     digest = hashlib.sha256()
     with path.open("rb") as file:
         while chunk := file.read(_CHUNK_BYTES):

@@ -47,7 +47,7 @@ def recover(folder: Path) -> None:
 
 def _put_in_place(folder: Path, stage: str) -> None:
     place, old = folder / stage, _beside(folder, stage, _OLD)
-    if place.exists():
+    if os.path.lexists(place):
         _remove(old)
         place.rename(old)
     _beside(folder, stage, _NEW).rename(place)
@@ -60,7 +60,10 @@ def _beside(folder: Path, stage: str, ending: str) -> Path:
 
 
 def _remove(folder: Path) -> None:
-    if folder.exists():
+    """Remove what stands there; of a link (a stage that somebody put on another disk) only the link."""
+    if folder.is_symlink() or folder.is_file():
+        folder.unlink()
+    elif folder.exists():
         shutil.rmtree(folder)
 
 

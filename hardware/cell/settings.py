@@ -11,6 +11,8 @@ import numpy as np
 from pydantic import Field, ValidationError, model_validator
 
 from core.errors import InputError
+from core.files import read_content, reason
+from core.formats import excerpt
 from core.geometry import FloatArray, rotation_error
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.pour.cell import MotionSettings
@@ -354,13 +356,16 @@ def read_cell(path: Path = SIMULATED_CELL) -> CellSettings:
         InputError: the file cannot be read, or something in it is missing, unknown or impossible.
     """
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
+        table = tomllib.loads(read_content(path).decode("utf-8"))
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(
-            f"The cell file {path} cannot be read ({error}); {CELL_FOLDER} holds examples to start from."
+            f"The cell file {path} cannot be read ({reason(error)}); "
+            f"{CELL_FOLDER} holds examples to start from."
         ) from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"The cell file {path} is not valid TOML ({error}); correct it there.") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(
+            f"The cell file {path} is not valid TOML ({reason(error)}); correct it there."
+        ) from error
     _resolve_recording(table, path.parent)
     try:
         return CellSettings.model_validate(table)
@@ -377,10 +382,10 @@ def _resolve_recording(table: dict[str, Any], folder: Path) -> None:
 def _explain(error: ValidationError, path: Path) -> str:
     """One sentence on the first thing wrong."""
     first = error.errors()[0]
-    name = ".".join(str(part) for part in first["loc"])
+    name = excerpt(".".join(str(part) for part in first["loc"]))
     if first["type"] == "missing":
         return f"The cell file {path} lacks '{name}'; compare it with {SIMULATED_CELL}."
     if first["type"] == "extra_forbidden":
         return f"The cell file {path} holds '{name}', which no cell has; correct its spelling or remove it."
-    reason = str(first["msg"]).removeprefix("Value error, ")
-    return f"In the cell file {path}, {name or 'something'} is not possible ({reason}); correct it there."
+    said = excerpt(str(first["msg"]).removeprefix("Value error, "))
+    return f"In the cell file {path}, {name or 'something'} is not possible ({said}); correct it there."

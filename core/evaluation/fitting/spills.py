@@ -9,9 +9,12 @@ from math import isfinite
 from pathlib import Path
 
 from core.errors import InputError
+from core.files import read_csv, reason
+from core.formats import excerpt
 
 _NEEDED = ("object", "theta", "indent", "spilled")
 COLUMNS = (*_NEEDED, "n_pour", "seed")
+_MOST_DIGITS = 9
 
 
 @dataclass(frozen=True)
@@ -42,12 +45,11 @@ def read_spills(path: Path) -> tuple[SpillMeasurement, ...]:
         InputError: the file cannot be read, or a row of it cannot be used.
     """
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            reader = csv.DictReader(file)
-            rows, known = list(reader), tuple(reader.fieldnames or ())
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        known, rows = read_csv(path)
+    except (OSError, ValueError) as error:
         raise InputError(
-            f"The spills {path} cannot be read ({error}); give a CSV with the columns {', '.join(_NEEDED)}."
+            f"The spills {path} cannot be read ({reason(error)}); give a CSV in UTF-8 with the columns "
+            f"{', '.join(_NEEDED)}."
         ) from error
     missing = [name for name in _NEEDED if name not in known]
     if missing:
@@ -97,7 +99,7 @@ def _number(path: Path, number: int, row: Mapping[str, str | None], column: str)
     except ValueError:
         value = float("nan")
     if not isfinite(value):
-        raise InputError(f"In {path}, line {number}, '{text}' in the column {column} is no number.")
+        raise InputError(f"In {path}, line {number}, '{excerpt(text)}' in the column {column} is no number.")
     return value
 
 
@@ -105,8 +107,10 @@ def _whole(path: Path, number: int, row: Mapping[str, str | None], column: str) 
     text = (row.get(column) or "").strip()
     if not text:
         return None
-    if not text.isdecimal():
-        raise InputError(f"In {path}, line {number}, '{text}' in the column {column} is no whole number.")
+    if not text.isdecimal() or len(text) > _MOST_DIGITS:
+        raise InputError(
+            f"In {path}, line {number}, '{excerpt(text)}' in the column {column} is no whole number."
+        )
     return int(text)
 
 

@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from core.errors import SessionError
-from core.files import read_arrays, read_json, write_arrays, write_json
+from core.files import read_arrays, read_json, reason, write_arrays, write_json
 from core.geometry import AnyArray, FloatArray
 from core.motion.trajectory import JointTrajectory
 from core.parameters.imagination import PouringParameters
@@ -202,11 +202,12 @@ class PourPlan:
         table, arrays = read_json(folder / PLAN_FILE), read_arrays(folder / TRAJECTORIES_FILE)
         try:
             plan = cls._from(table, arrays)
-        except (KeyError, TypeError, ValueError) as error:
+            digest = plan.digest
+        except (LookupError, TypeError, ValueError) as error:
             raise SessionError(
-                f"{folder / PLAN_FILE} is not a valid plan ({error}); plan the pour again."
+                f"{folder / PLAN_FILE} is not a valid plan ({reason(error)}); plan the pour again."
             ) from error
-        if plan.digest != table.get("digest"):
+        if digest != table.get("digest"):
             raise SessionError(f"The plan in {folder} was changed after it was written; plan the pour again.")
         return plan
 

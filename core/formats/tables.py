@@ -1,0 +1,446 @@
+"""The JSON files of a session: which keys each must have, and of which kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import AfterValidator, ConfigDict, Field, FiniteFloat, TypeAdapter, ValidationError, with_config
+from typing_extensions import NotRequired, TypedDict
+
+from core.formats.text import excerpt
+
+Count = Annotated[int, Field(ge=0, le=1_000_000_000)]
+Index = Annotated[int, Field(ge=0, le=1_000)]
+Share = Annotated[float, Field(ge=0, le=1)]
+Seconds = Annotated[float, Field(ge=0, le=1e9)]
+Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+Matrix3 = tuple[Vector, Vector, Vector]
+_Row4 = tuple[FiniteFloat, FiniteFloat, FiniteFloat, FiniteFloat]
+Matrix4 = tuple[_Row4, _Row4, _Row4, _Row4]
+
+
+def _checked_time(text: str) -> str:
+    datetime.fromisoformat(text)
+    return text
+
+
+Time = Annotated[str, AfterValidator(_checked_time)]
+"""ISO 8601."""
+
+
+class Record(TypedDict):
+    """`record.json` of any stage."""
+
+    stage: str
+    inputs: dict[str, str]
+    parameters: dict[str, Any]
+    digest: str
+    files: dict[str, Count]
+    versions: dict[str, str]
+    created: str
+    seconds: Seconds
+
+
+class Warnings(TypedDict):
+    """`warnings.json` of any stage."""
+
+    warnings: list[str]
+
+
+class TableInView(TypedDict):
+    """The table as one view sees it."""
+
+    name: str
+    height_m: FiniteFloat | None
+    tilt_rad: FiniteFloat | None
+
+
+class Correction(TypedDict):
+    """What one view's pose was changed by."""
+
+    name: str
+    shift_m: FiniteFloat
+    turn_rad: FiniteFloat
+    residual_before_m: FiniteFloat | None
+    residual_after_m: FiniteFloat | None
+    T_base_camera: Matrix4
+
+
+class Corrections(TypedDict):
+    """What all poses were changed by."""
+
+    views: list[Correction]
+    residual_before_m: FiniteFloat | None
+    residual_after_m: FiniteFloat | None
+    table_sd_before_m: FiniteFloat | None
+    table_sd_after_m: FiniteFloat | None
+    view_error_m: FiniteFloat | None
+
+
+class Reconstruction(TypedDict):
+    """`reconstruction/result.json`."""
+
+    platform_height_m: FiniteFloat
+    truncation_m: FiniteFloat
+    pose_health: list[TableInView]
+    refinement: Corrections | None
+
+
+class View(TypedDict):
+    """How good one view is."""
+
+    name: str
+    valid_share: FiniteFloat
+    is_repeated: NotRequired[bool]
+    table_height_m: NotRequired[FiniteFloat | None]
+    table_tilt_rad: NotRequired[FiniteFloat | None]
+    table_offset_m: NotRequired[FiniteFloat | None]
+    residual_median_m: NotRequired[FiniteFloat | None]
+    residual_rms_m: NotRequired[FiniteFloat | None]
+
+
+class Cavity(TypedDict):
+    """What no view saw inside the openings."""
+
+    area_m2: NotRequired[FiniteFloat]
+    volume_ml: NotRequired[FiniteFloat]
+    depth_m: NotRequired[FiniteFloat]
+    width_m: NotRequired[FiniteFloat]
+
+
+class Quality(TypedDict):
+    """`quality/quality.json`."""
+
+    verdict: str
+    reasons: list[str]
+    unseen_share: FiniteFloat
+    cavity: Cavity
+    views: list[View]
+
+
+class Collision(TypedDict):
+    """`collision.json`."""
+
+    method: str
+
+
+class Footprint(TypedDict):
+    """Where the candies fell from that stayed."""
+
+    center_m: Vector
+    axis_rad: FiniteFloat
+    deviations_m: tuple[FiniteFloat, FiniteFloat]
+
+
+class Verdict(TypedDict):
+    """What an object holds, held against its own size."""
+
+    capacity_share: FiniteFloat
+    threshold: FiniteFloat
+    n_candies: FiniteFloat
+    volume_ml: FiniteFloat
+    n_load: Count
+    holds_rad: FiniteFloat
+
+
+class Drop(TypedDict):
+    """`containability/containability.json`; earlier versions kept the verdict in it."""
+
+    omega: Share
+    n_drop: Annotated[Count, Field(ge=1)]
+    n_in: Count
+    aabb_m: tuple[Vector, Vector]
+    footprint: Footprint | None
+    omega_threshold: NotRequired[FiniteFloat]
+    verdict: NotRequired[Verdict | None]
+
+
+class Judgement(TypedDict):
+    """`judgement/judgement.json`."""
+
+    omega_threshold: FiniteFloat
+    verdict: Verdict | None
+
+
+class Capacity(TypedDict):
+    """`capacity.json`."""
+
+    n_candies: FiniteFloat
+    spread: FiniteFloat
+    volume_ml: FiniteFloat
+    heaped_ml: FiniteFloat
+    geometric_volume_ml: FiniteFloat
+    candy_hollow_ml: FiniteFloat
+    candy_scale: FiniteFloat
+    n_poured: list[Count]
+    n_full: list[FiniteFloat]
+    n_kept: list[FiniteFloat]
+    rim_height_m: FiniteFloat
+    fill_height_m: FiniteFloat
+    explanation: str
+    candies_per_ml: Annotated[FiniteFloat, Field(gt=0)]
+    stand_in_diameter_m: NotRequired[FiniteFloat | None]
+
+
+class Holding(TypedDict):
+    """`holding.json`, as far as it is read."""
+
+    n_asked: Annotated[Count, Field(ge=1)]
+    n_load: Count
+
+
+class Amount(TypedDict):
+    """How many candies go into the object."""
+
+    request: str
+    n_fit: Count
+    n_safe: Count
+    n_total: Count
+    n_per_cup: list[Annotated[Count, Field(ge=1)]]
+    fill_share: FiniteFloat
+    fill_height_m: FiniteFloat
+    share_of_capacity: FiniteFloat
+    warning: str
+    refusal: str
+
+
+class PlannedAmount(TypedDict):
+    """`amount/amount.json`."""
+
+    n_pour: Count
+    amount: Amount | None
+
+
+class Pours(TypedDict):
+    """`pouring/pours.json`."""
+
+    n_pour: Annotated[Count, Field(ge=1)]
+    p: list[list[FiniteFloat]]
+    p_spread: NotRequired[list[list[FiniteFloat]]]
+    n_in: list[list[list[Count]]]
+    n_spilled: NotRequired[list[list[list[Count]]]]
+    theta_rad: list[FiniteFloat]
+    indent_m: list[FiniteFloat]
+    pivot_m: list[list[Vector]]
+
+
+class Risk(TypedDict):
+    """`risk.json`, as far as it is read."""
+
+    n_pour: Annotated[Count, Field(ge=1)]
+    spilled: list[list[list[Count]]]
+
+
+class PourChoice(TypedDict):
+    """The pour to make."""
+
+    i: Index
+    j: Index
+    theta_rad: FiniteFloat
+    pivot_m: Vector
+    t_init_m: Vector
+    r_init: Matrix3
+
+
+class Choice(TypedDict):
+    """`choice.json`."""
+
+    choice: PourChoice | None
+
+
+class Feasibility(TypedDict):
+    """Whether the arm can make a pour."""
+
+    i: Index
+    j: Index
+    is_feasible: bool
+    reason: str
+    clearance_m: FiniteFloat
+    turn_s: FiniteFloat
+    duration_s: FiniteFloat
+
+
+class Motions(TypedDict):
+    """`motion/motion.json`; `paper_choice` is the former name of `free_choice`."""
+
+    pours: list[Feasibility]
+    choice: PourChoice | None
+    free_choice: NotRequired[PourChoice]
+    paper_choice: NotRequired[PourChoice]
+
+
+class Evidence(TypedDict):
+    """`evidence/evidence.json`; its files lie beside it."""
+
+    renderer: str
+    files: list[Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$")]]
+
+
+class Move(TypedDict):
+    """One move of a plan."""
+
+    name: str
+    phase: str
+    duration_s: FiniteFloat
+    holds_cup: bool
+    gripper_after: str | None
+
+
+class Plan(TypedDict):
+    """`plan.json` of a run."""
+
+    i: Index
+    j: Index
+    clearance_m: FiniteFloat
+    cup_clearance_m: FiniteFloat
+    pivot_error_m: FiniteFloat
+    singularity: FiniteFloat
+    imagined_turn_s: FiniteFloat
+    turn_s: FiniteFloat
+    nearest: tuple[str, str]
+    moves: Annotated[list[Move], Field(min_length=1)]
+    digest: str
+
+
+class Outcome(TypedDict):
+    """`outcome.json` of a run."""
+
+    n_candies: Count | None
+    n_spilled: Count | None
+    remarks: str
+    is_simulated: bool
+    facts: dict[str, Any]
+
+
+class TableOutcome(TypedDict):
+    """`table/outcome.json` of a simulated run, as far as it is read."""
+
+    T_given_stood: Matrix4
+
+
+@with_config(ConfigDict(extra="forbid"))
+class OperatorChoice(TypedDict):
+    """`operator_choice.json`: what a person decided is never passed over, so it holds nothing unknown."""
+
+    i: Index
+    j: Index
+    reason: str
+    imagination: str
+    time: str
+
+
+class Event(TypedDict):
+    """One line of a run's `events.jsonl`, as far as it is read."""
+
+    kind: str
+    time: NotRequired[Time]
+    sentence: NotRequired[str]
+    imagination: NotRequired[str]
+    note: NotRequired[str]
+    is_back_off: NotRequired[bool]
+
+
+_TABLES: Mapping[tuple[str, str], type] = {
+    ("reconstruction", "result.json"): Reconstruction,
+    ("quality", "quality.json"): Quality,
+    ("mesh", "collision.json"): Collision,
+    ("collision", "collision.json"): Collision,
+    ("containability", "containability.json"): Drop,
+    ("containability", "capacity.json"): Capacity,
+    ("containability", "holding.json"): Holding,
+    ("judgement", "judgement.json"): Judgement,
+    ("judgement", "capacity.json"): Capacity,
+    ("judgement", "holding.json"): Holding,
+    ("amount", "amount.json"): PlannedAmount,
+    ("pouring", "amount.json"): Amount,
+    ("pouring", "pours.json"): Pours,
+    ("pouring", "risk.json"): Risk,
+    ("pouring", "choice.json"): Choice,
+    ("risk", "risk.json"): Risk,
+    ("risk", "choice.json"): Choice,
+    ("motion", "motion.json"): Motions,
+    ("motion", "risk.json"): Risk,
+    ("evidence", "evidence.json"): Evidence,
+    ("plan", "plan.json"): Plan,
+    ("table", "outcome.json"): TableOutcome,
+}
+"""By folder and name; earlier versions kept some of them in other folders."""
+MADE_BY_REPORT = frozenset(folder for folder, _ in _TABLES) - {"mesh", "motion", "plan", "table"}
+"""The folders of the stages that a report is made of."""
+
+
+def kind_of(path: Path) -> type | None:
+    """Return what a session's file must hold, by its folder and name; none if nothing is known of it."""
+    return _TABLES.get((path.parent.name, path.name))
+
+
+def check_table(content: bytes, kind: type) -> Any:
+    """Return the table that JSON holds, with the keys of its kind and no others.
+
+    Raises:
+        ValueError: a key is missing or wrong; one short line says which.
+    """
+    try:
+        table = _adapter(kind).validate_json(content, strict=True)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        where = ".".join(str(part) for part in first["loc"])
+        said = str(first["msg"]).removeprefix("Value error, ")
+        raise ValueError(excerpt(f"{where}: {said}" if where else said)) from None
+    if kind in _CHECKS:
+        _CHECKS[kind](table)
+    return table
+
+
+@cache
+def _adapter(kind: type) -> TypeAdapter[Any]:
+    return TypeAdapter(kind)
+
+
+def _check_pours(table: Pours) -> None:
+    shape = len(table["theta_rad"]), len(table["indent_m"])
+    grids = [table[name] for name in ("p", "p_spread", "n_in", "n_spilled", "pivot_m") if name in table]
+    if 0 in shape or any(_shape(grid) != shape for grid in grids):
+        raise ValueError("its grids do not have one size")
+    counts = [pour for name in ("n_in", "n_spilled") for row in table.get(name, []) for pour in row]  # type: ignore[attr-defined]
+    if len({len(pour) for pour in counts}) != 1 or not counts[0]:
+        raise ValueError("its pours do not have one number of packings")
+    if max(max(pour) for pour in counts) > table["n_pour"]:
+        raise ValueError("n_in or n_spilled exceeds n_pour")
+
+
+def _check_risk(table: Risk) -> None:
+    if _shape(table["spilled"]) is None or not all(pour for row in table["spilled"] for pour in row):
+        raise ValueError("spilled: a pour has no tries")
+
+
+def _check_motions(table: Motions) -> None:
+    known = {(pour["i"], pour["j"]) for pour in table["pours"]}
+    chosen = [table["choice"], table.get("free_choice") or table.get("paper_choice")]
+    if chosen[1] is None:
+        raise ValueError("free_choice: Field required")
+    if any(choice is not None and (choice["i"], choice["j"]) not in known for choice in chosen):
+        raise ValueError("choice: there is no such pour")
+
+
+def _check_drop(table: Drop) -> None:
+    if not all(low < high for low, high in zip(*table["aabb_m"], strict=True)):
+        raise ValueError("aabb_m: its corners are exchanged")
+
+
+def _shape(grid: Sequence[Sequence[Any]]) -> tuple[int, int] | None:
+    """Return (rows, columns); none if the rows differ, or there is nothing."""
+    columns = {len(row) for row in grid}
+    return (len(grid), columns.pop()) if len(columns) == 1 and columns != {0} else None
+
+
+_CHECKS: Mapping[type, Callable[[Any], None]] = {
+    Drop: _check_drop,
+    Pours: _check_pours,
+    Risk: _check_risk,
+    Motions: _check_motions,
+}
