@@ -9,7 +9,7 @@ OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS
 	.venv/bin/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement capacity holding amounts worlds collision-table looking-again pose-errors pour-plans pour-faults pour-soak fuzz scene-speed window-start window-tour window-kills screenshots clean
+.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors pour-plans pour-faults pour-soak fuzz scene-speed window-start window-tour window-kills screenshots clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -60,6 +60,14 @@ evaluation-cost: setup
 
 judgement: setup
 	.venv/bin/poursight evaluate ../shared/data/objects --out build/judgement
+
+# N objects of the families that nothing was developed with.
+N = 500
+FAMILIES = build/families-$(N)
+families: setup
+	test -f $(FAMILIES)/objects/labels.csv || .venv/bin/poursight objects make $(FAMILIES)/objects --half judging --n $(N)
+	.venv/bin/poursight evaluate $(FAMILIES)/objects --input mesh --pours 0 --variant imagination --out $(FAMILIES)/judged
+	.venv/bin/python -m tests.benchmarks.families $(FAMILIES)/judged
 
 capacity: setup
 	.venv/bin/python -m tests.benchmarks.capacity

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from app.cli.evaluation import cluster, compare, evaluate, tune
+from app.cli.objects import objects
 from app.cli.options import (
     CellOption,
     PourCellOption,
@@ -285,6 +286,7 @@ def demo(
 for _command in (evaluate, compare, cluster, tune):
     app.command()(_command)
 app.command("calibrate", help="The same as 'tune'.")(tune)
+app.add_typer(objects, name="objects")
 
 
 @app.command()

@@ -119,10 +119,11 @@ def builtin_object(name: str) -> TriangleMesh:
     return BUILTIN_OBJECTS[name]()
 
 
-def _vessel(outside: list[Point], wall_m: float, floor_m: float) -> TriangleMesh:
-    """A turned vessel of even wall; `outside` are (radius, height) from the foot to the rim.
+def vessel_profile(outside: list[Point], wall_m: float, floor_m: float) -> tuple[list[Point], list[Point]]:
+    """Profile of a vessel of even wall, in two: from the foot to the rim, and from its top to the floor.
 
-    The cavity is the outside moved inwards by the wall, cut off at the floor; the rim is half a circle.
+    The cavity is the outside, (radius, height) from the foot to the rim, moved inwards by the wall and cut
+    off at the floor; the rim is half a circle.
     """
     outline = np.array(outside)
     along = np.gradient(outline, axis=0)
@@ -133,14 +134,21 @@ def _vessel(outside: list[Point], wall_m: float, floor_m: float) -> TriangleMesh
     rim_centre = (outline[-1] + inside[-1]) / 2
     lean = float(np.arctan2(*(outline[-1] - inside[-1])[::-1]))
     rim = arc((float(rim_centre[0]), float(rim_centre[1])), wall_m / 2, lean, lean + pi)
-    return turned([*outside[:-1], *rim, *map(_point, inside[-2::-1]), (floor_radius, floor_m)])
+    top = max(range(len(rim)), key=lambda k: rim[k][1])
+    return [*outside[:-1], *rim[:top]], [*rim[top:], *map(_point, inside[-2::-1]), (floor_radius, floor_m)]
+
+
+def _vessel(outside: list[Point], wall_m: float, floor_m: float) -> TriangleMesh:
+    """A turned vessel of even wall; `outside` are (radius, height) from the foot to the rim."""
+    outer, inner = vessel_profile(outside, wall_m, floor_m)
+    return turned([*outer, *inner])
 
 
 def _point(values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> Point:
     return float(values[0]), float(values[1])
 
 
-def _smooth(corners: list[Point], n: int = 40) -> list[Point]:
+def smooth(corners: list[Point], n: int = 40) -> list[Point]:
     """A monotone curve of radius over height through (radius, height) corners."""
     from scipy.interpolate import PchipInterpolator
 
@@ -162,7 +170,7 @@ def _mug() -> TriangleMesh:
 def _bowl() -> TriangleMesh:
     """150 x 65 mm, wall 4 mm."""
     curve = [(0.030, 0.0), (0.045, 0.006), (0.060, 0.020), (0.070, 0.040), (0.075, 0.063)]
-    return _vessel(_smooth(curve), 0.004, 0.007)
+    return _vessel(smooth(curve), 0.004, 0.007)
 
 
 def _plate() -> TriangleMesh:
@@ -174,7 +182,7 @@ def _plate() -> TriangleMesh:
 
 def _bottle() -> TriangleMesh:
     """65 x 210 mm with its cap on, so it holds nothing as it stands; solid, for nothing sees its inside."""
-    body = _smooth([(0.0325, 0.004), (0.0325, 0.13), (0.031, 0.145), (0.014, 0.18), (0.014, 0.188)], 50)
+    body = smooth([(0.0325, 0.004), (0.0325, 0.13), (0.031, 0.145), (0.014, 0.18), (0.014, 0.188)], 50)
     cap = [(0.0165, 0.188), (0.0165, 0.208), (0.0145, 0.210)]
     return turned([(0.030, 0.0), *body, *cap])
 
@@ -187,7 +195,7 @@ def _open_ring() -> TriangleMesh:
 def _vase() -> TriangleMesh:
     """200 mm tall, 84 mm at its belly, with an opening of 40 mm; wall 4 mm."""
     belly = [(0.030, 0.0), (0.034, 0.01), (0.042, 0.06), (0.034, 0.12), (0.023, 0.17), (0.024, 0.198)]
-    return _vessel(_smooth(belly, 60), 0.004, 0.008)
+    return _vessel(smooth(belly, 60), 0.004, 0.008)
 
 
 def _glass() -> TriangleMesh:
