@@ -33,7 +33,7 @@ PDF_PACKAGES = ("libpango-1.0-0", "libpangoft2-1.0-0", "libharfbuzz-subset0")
 """Debian's names of what WeasyPrint loads at run time."""
 
 _MOST_UNPACKED = 100
-"""Times an archive's size; recordings and logs are packed to a twentieth at most."""
+"""Times an archive's size; what unpacks to more is made to fill disks."""
 _SMALL_BYTES = 10_000_000
 """As much may be unpacked from any archive."""
 _MOST_OF_FREE = 0.9
