@@ -90,7 +90,7 @@ def test_a_pour_that_is_likely_to_spill_has_to_be_asked_for(poursight, planned_s
     certain = "--set=risk.wanted_clean=0.99"
     code, out, err = poursight("imagine", planned_session, certain, "--json", "-")
     assert code == 0, err
-    assert "99 % are wanted" in json.loads(out)["advice"]
+    assert "at least 99 % is wanted" in json.loads(out)["advice"]
     code, out, err = poursight("pour", planned_session, "--yes")
     assert code == 1
     assert "Pouring is not advised" in err and "--anyway" in err

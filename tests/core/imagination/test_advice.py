@@ -19,7 +19,7 @@ def test_a_sure_pour_is_not_advised_against():
 def test_the_sentence_has_the_bound_the_trials_and_what_is_wanted():
     said = advice_against(RISK, *DOUBTFUL, 0.6)
     bound = 100 * RISK.clean_at_least[DOUBTFUL]
-    assert f"only at least {bound:.0f} % likely (3 of 4 trials clean), and 60 % are wanted" in said
+    assert f"at least {bound:.0f} % likely (3 of 4 trials clean), and at least 60 % is wanted" in said
     assert "(0 of 4 trials clean)" in advice_against(RISK, *SPILLING, 0.6)
 
 
