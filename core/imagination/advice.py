@@ -19,6 +19,6 @@ def advice_against(risk: PourRisk | None, i: int, j: int, wanted_clean: float) -
     n, clean = int(risk.n_tries[i, j]), int(risk.n_clean[i, j])
     sure = f"{100 * risk.clean_at_least[i, j]:.0f} % likely ({clean} of {n} trials clean)"
     return (
-        f"Pouring is not advised: a clean pour is at least {sure}, and at least {100 * wanted_clean:.0f} % is "
-        "wanted. Fewer candies, a scan with more views, or a smaller cup may help."
+        f"Pouring is not advised: a clean pour is at least {sure}, and at least {100 * wanted_clean:.0f} % "
+        "is wanted. Fewer candies, a scan with more views, or a smaller cup may help."
     )
