@@ -135,9 +135,12 @@ def read_arrays(path: Path) -> dict[str, AnyArray]:
     try:
         with np.load(BytesIO(read_content(path)), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-        check_arrays(path, arrays)
     except Exception as error:  # zipfile, zlib and numpy each raise their own
         raise SessionError(f"{path} cannot be read ({reason(error)}).", _remedy(path)) from error
+    try:
+        check_arrays(path, arrays)
+    except ValueError as error:
+        raise SessionError(f"{path} is damaged ({reason(error)}).", _remedy(path)) from error
     return arrays
 
 

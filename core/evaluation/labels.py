@@ -137,8 +137,8 @@ def _object(
 ) -> LabelledObject:
     if not _is_plain(name):
         raise InputError(
-            f"The object '{excerpt(name)}' of {folder} cannot have that name: it becomes the name of files; "
-            "use letters, digits and hyphens."
+            f"'{excerpt(name)}', an object of {folder}, cannot be a file's name, as it has to; use letters, "
+            "digits and hyphens."
         )
     return LabelledObject(
         name,

@@ -54,9 +54,9 @@ def _robot(settings: CellSettings) -> Finding:
     except PoursightError as error:
         return Finding("robot", subject, str(error))
     version = ".".join(map(str, arm.controller_version))
-    modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}, speed slider {seen.slider:.0%}"
+    modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}"
     agree = "are only known when it is connected" if seen.tool_offset is None else "agree"
-    said = f"{subject}, controller {version}, {modes}, its kinematics {agree}"
+    said = f"{subject}, controller {version}, {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
     return Finding("robot", said, problem)

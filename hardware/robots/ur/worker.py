@@ -67,7 +67,8 @@ _HEARD_S = 0.2
 """The thread that makes the control calls loops within milliseconds; after this time it is stuck, ..."""
 _HANDSHAKE_S = 2.0
 """... but for calls that wait for the controller's answers, over a slow link, or for the arm's rest."""
-_PROGRAM_SILENT_S = 0.5
+_PROGRAM_SILENT_S = 2.0
+"""A busy machine may keep a program from running for a second; somebody who suspends it takes longer."""
 _LOOP_S = 0.05
 """Of a pause in this thread's own work no more counts: this process did not run, either."""
 
@@ -100,6 +101,7 @@ class _Worker:
         self._cycle_s = setup.cycle_s
         self._motion: Motion | None = None
         self._outputs = (False, False)
+        self._switched: set[int] = set()
         self._is_over = False
         self._refusal = "The arm was stopped; recover the robot first."
         self._pulse, self._heard = pulse, 0
@@ -194,6 +196,8 @@ class _Worker:
     def _ask_set_tool_output(self, output: int, value: bool) -> None:
         if not self._io.setToolDigitalOut(output, value):
             raise MoveRefused(f"The controller did not take tool output {output}; recover the robot.")
+        self._outputs = (value, self._outputs[1]) if output == 0 else (self._outputs[0], value)
+        self._switched.add(output)
 
     def _begin(self, motion: Motion) -> None:
         if self._is_over:
@@ -201,6 +205,7 @@ class _Worker:
         if self._motion is not None:
             raise MoveRefused("The arm is still moving; stop it or wait until it stops.")
         self._outputs = tool_outputs(self._latest)
+        self._switched.clear()
         self._motion = motion
 
     def _stop(self, request: Request) -> None:
@@ -222,7 +227,7 @@ class _Worker:
         if not motion.is_streaming or motion.progress >= 1:
             self._due_s = time.monotonic() + _HANDSHAKE_S
         try:
-            raise_if(output_changed(self._outputs, tool_outputs(self._latest)))
+            self._watch_outputs()
             is_done = motion.step(self._latest)
             if motion.is_streaming:
                 self._kicked_s = time.monotonic()
@@ -242,6 +247,19 @@ class _Worker:
                 self._brake(motion)
                 error = self._reason(error)
         self._connection.send(Ended(error, motion.progress))
+
+    def _watch_outputs(self) -> None:
+        """What we switched ourselves is watched from the state on that shows it.
+
+        Raises:
+            OutputChanged: an output is not as it should be.
+        """
+        now = tool_outputs(self._latest)
+        self._switched = {number for number in self._switched if now[number] != self._outputs[number]}
+        before = tuple(
+            now[number] if number in self._switched else self._outputs[number] for number in (0, 1)
+        )
+        raise_if(output_changed((before[0], before[1]), now))
 
     def _brake(self, motion: Motion) -> None:
         self._due_s = time.monotonic() + _HANDSHAKE_S

@@ -154,6 +154,7 @@ def test_more_than_fits_is_refused_before_anything_moves(poursight, refused, ses
         "--set=holding.n_load=6",
         "--set=holding.tilt_step_rad=0.2",
         "--set=pouring.n_pour=900",
+        "--set=pouring.amount=number",
         "--set=pouring.theta_fixed_rad=0",
         "--set=pouring.settle_s=0.1",
         "--set=pouring.turn_s=0.3",
