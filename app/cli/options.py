@@ -55,7 +55,9 @@ def written_file(text: str) -> Path:
     if path.is_dir():
         raise InputError(f"{_shown(text)} is a folder; name a file in it.")
     if not path.parent.is_dir():
-        raise InputError(f"There is no folder {_shown(str(path.parent))}; make it, or name a file elsewhere.")
+        raise InputError(
+            f"{_shown(text)} cannot be written: its folder does not exist; make it, or name a file elsewhere."
+        )
     if not os.access(path.parent, os.W_OK | os.X_OK):
         raise InputError(f"The folder {_shown(str(path.parent))} cannot be written; name a file elsewhere.")
     return path

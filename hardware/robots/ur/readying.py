@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -127,10 +128,11 @@ _OURS_ENDS_WITHIN_S = 1.0
 _POLL_S = 0.01
 
 
-def refuse_foreign_program(dashboard: Dashboard, name: str) -> None:
+def refuse_foreign_program(dashboard: Dashboard, name: str, may_be_ours: Callable[[], bool]) -> None:
     """Refuse to recover where somebody else's program runs.
 
-    Our own ends by its watchdog once its worker is gone, and one that is paused does not move.
+    Our own ends by its watchdog once its worker is gone, and one that is paused does not move. When a link
+    comes back, ur_rtde starts our program again, without a watchdog: that one stays, and is asked about.
 
     Raises:
         RobotNotReady: one runs on.
@@ -138,6 +140,8 @@ def refuse_foreign_program(dashboard: Dashboard, name: str) -> None:
     deadline_s = time.monotonic() + _OURS_ENDS_WITHIN_S
     while (program := dashboard.program()) is not None and program.upper().startswith("PLAYING"):
         if time.monotonic() > deadline_s:
+            if may_be_ours():
+                return
             raise RobotNotReady(
                 f"Another program runs on the {name} ({program}); end it, then recover the robot again."
             )

@@ -235,13 +235,16 @@ class UR5Robot:
         """
         with self._command_lock:
             self._disconnect()
+            was_lost = isinstance(self._refusal, RobotLost)
             # Not later: a stop that comes meanwhile has to be recovered from anew. Not earlier: the old
             # worker's last message may come until it is gone.
             self._refusal = None
             probe(self._address)
             with Dashboard(self._address) as dashboard:
                 refuse_local_control(dashboard, self.name)
-                refuse_foreign_program(dashboard, self.name)
+                refuse_foreign_program(
+                    dashboard, self.name, lambda: was_lost and not glance(self._address).is_moving
+                )
                 make_ready(dashboard, self.name)
             self._connect()
 
