@@ -113,7 +113,7 @@ def tracking_lost(
 
 
 def output_changed(before: tuple[bool, bool], now: tuple[bool, bool]) -> OutputChanged | None:
-    """Say so when an output of the tool is not as it was: nobody switches one while the arm moves."""
+    """Say so when an output of the tool is not as it should be while the arm moves."""
     changed = [number for number in (0, 1) if before[number] != now[number]]
     if not changed:
         return None
