@@ -125,8 +125,8 @@ class TopBar(QFrame):
         states = [None if one is None else one.state for one in (before, status)]
         self._is_moving = False
         if states[0] is not None and states[1] is not None:
-            way_rad = abs(states[1].joints_rad - states[0].joints_rad).max()
-            self._is_moving = bool(way_rad > _MOVED_RAD)
+            moved_rad = abs(states[1].joints_rad - states[0].joints_rad).max()
+            self._is_moving = bool(moved_rad > _MOVED_RAD)
         return self._is_moving
 
     def _show_camera(self) -> None:
