@@ -117,6 +117,7 @@ class WorkerLink:
         self._replies: dict[int, SimpleQueue[RobotError | None]] = {}
         self._send_lock = Lock()
         self._is_ending = Event()
+        self._loss: RobotLost | None = None
         # ur_rtde prints its progress to both outputs; a worker without a parent must not go on driving.
         self._process = ChildProcess(
             _work,
@@ -147,6 +148,8 @@ class WorkerLink:
         Raises:
             RobotLost: it is too old, or the worker's thread that commands the arm is stuck.
         """
+        if self._loss is not None:
+            raise self._loss
         raw = self._mailbox.read()
         if self._silence(raw):
             # Where the whole machine stood still, the worker gets to run again, too, and sends the newest.
@@ -241,6 +244,7 @@ class WorkerLink:
                 lost = self._lost("is gone: its driver's process has ended")
             if self._is_ending.is_set():
                 return
+            self._loss = lost
             self._is_ending.set()
             self._process.end()
             for reply in list(self._replies.values()):
