@@ -182,6 +182,7 @@ def answer_table(result: Imagination, parameters: Parameters) -> dict[str, Any]:
     return {
         "omega": found.omega,
         "is_open_container": found.is_open_container,
+        "is_undecided": found.is_undecided,
         "n_drop": found.n_drop,
         "n_in": found.n_in,
         "footprint": None

@@ -40,6 +40,7 @@ class SessionSummary:
         omega_threshold: Omega_thr it was compared with.
         capacity_share: what it holds as a share of its convex hull; None if Omega decided.
         capacity_threshold: what that was compared with.
+        is_undecided: whether the verdict depends on what no view saw.
         best: the imagined pour with the largest P; among equals the chosen one.
         chosen: the pour to make: the operator's, else the arm's, else the paper's rule's.
         operator_reason: why the operator chose it; empty if nobody did.
@@ -62,6 +63,7 @@ class SessionSummary:
     omega_threshold: float | None = None
     capacity_share: float | None = None
     capacity_threshold: float | None = None
+    is_undecided: bool = False
     best: PourScore | None = None
     chosen: PourScore | None = None
     operator_reason: str = ""
@@ -78,6 +80,8 @@ class SessionSummary:
         """The verdict in words that a search tells apart; empty as long as there is none."""
         if self.is_open_container is None:
             return ""
+        if self.is_undecided:
+            return "cannot tell"
         return "open container" if self.is_open_container else "not a container"
 
     @property
@@ -122,6 +126,7 @@ def _summarize(folder: Path) -> SessionSummary:
         omega_threshold=judged.omega_threshold if judged is not None else None,
         capacity_share=by_capacity.capacity_share if by_capacity is not None else None,
         capacity_threshold=by_capacity.threshold if by_capacity is not None else None,
+        is_undecided=judged is not None and judged.is_undecided,
         best=best,
         chosen=chosen,
         operator_reason=operator.reason if operator is not None else "",

@@ -16,6 +16,7 @@ from core.mesh_topology import is_convex, join, topology
 from core.parameters.reconstruction import CollisionParameters
 from core.progress import Reporter
 from core.quiet import quiet
+from core.unseen_readings import UnseenReadings
 
 STAGE = "collision"
 DECOMPOSITION_MAX_FACES = 2000
@@ -28,9 +29,14 @@ _N_SAMPLES = 20_000
 
 
 def build_collision_model(
-    mesh: TriangleMesh, parameters: CollisionParameters, reporter: Reporter
+    mesh: TriangleMesh,
+    parameters: CollisionParameters,
+    reporter: Reporter,
+    unseen: UnseenReadings | None = None,
 ) -> CollisionModel:
     """Make a body for the physics out of a mesh in metres; same arguments, same result.
+
+    `unseen` are other surfaces that a scan allows; they are simplified in the same way.
 
     Raises:
         StageError: the decomposition found no part.
@@ -39,10 +45,13 @@ def build_collision_model(
     reporter.progress(STAGE, 0, 1)
     reporter.raise_if_cancelled()
     surface = simplify(mesh, parameters.max_faces)
+    if unseen is not None:
+        unseen = unseen.map(lambda other: simplify(other, parameters.max_faces))
     if parameters.method == "exact":
-        model = CollisionModel("exact", (surface,), surface)
+        model = CollisionModel.exact(surface, unseen)
     else:
-        model = CollisionModel(parameters.method, _decompose(surface, parameters, reporter), surface)
+        parts = _decompose(surface, parameters, reporter)
+        model = CollisionModel(parameters.method, parts, surface, unseen)
     reporter.progress(STAGE, 1, 1)
     return model
 

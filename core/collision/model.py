@@ -12,6 +12,7 @@ from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import AnyArray, FloatArray
 from core.mesh import TriangleMesh
 from core.mesh_topology import join
+from core.unseen_readings import UnseenReadings
 
 GIVEN = "given"
 """Method of a model whose convex parts were not made here but read."""
@@ -28,11 +29,18 @@ class CollisionModel:
             `given`: convex parts.
         parts: meshes in metres, in the frame of the surface.
         surface: the true surface, simplified; its AABB decides which particle is inside (Sec. III-A).
+        unseen: other surfaces that the scan allows, simplified as well; none where it saw everything.
     """
 
     method: str
     parts: tuple[TriangleMesh, ...]
     surface: TriangleMesh
+    unseen: UnseenReadings | None = None
+
+    @classmethod
+    def exact(cls, surface: TriangleMesh, unseen: UnseenReadings | None = None) -> CollisionModel:
+        """Return the body that is a surface as it is."""
+        return cls("exact", (surface,), surface, unseen)
 
     @property
     def is_convex(self) -> bool:
@@ -51,6 +59,8 @@ class CollisionModel:
 
     def save(self, folder: Path) -> None:
         """Write `collision.npz` (exact coordinates) and `collision.json` into an existing folder."""
+        if self.unseen is not None:
+            self.unseen.save(folder)
         write_arrays(
             folder / _ARRAYS,
             part_n_vertices=np.array([len(part.vertices_m) for part in self.parts]),
@@ -84,7 +94,7 @@ class CollisionModel:
             faces = _cut(arrays["part_faces"], arrays["part_n_faces"])
             parts = tuple(TriangleMesh(v, f) for v, f in zip(vertices, faces, strict=True))
             surface = TriangleMesh(arrays["surface_vertices_m"], arrays["surface_faces"])
-            return cls(str(table["method"]), parts, surface)
+            return cls(str(table["method"]), parts, surface, UnseenReadings.load(folder))
         except (KeyError, ValueError) as error:
             raise SessionError(
                 f"The collision model in {folder} is damaged ({error}).", Remedy.RUN_AGAIN

@@ -86,6 +86,7 @@ def summary_of(evaluation: Evaluation) -> dict[str, Any]:
         "ambiguous": [_trial_table(one) for one in evaluation.trials if one.label == "ambiguous"],
         "stray_pours": [_trial_table(one) for one in found.stray_pours],
         "failed": [_trial_table(one) | {"problem": one.problem} for one in evaluation.trials if one.problem],
+        "undecided": [_trial_table(one) for one in evaluation.trials if one.is_undecided],
         "agreement": _agreement_table(evaluation),
     }
 

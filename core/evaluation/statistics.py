@@ -72,12 +72,13 @@ class Confusion:
     true_negative: int
     false_negative: int
     failed: int
+    undecided: int = 0
 
     @property
     def accuracy(self) -> Share:
-        """Share judged right; what failed is not right."""
-        n = self.true_positive + self.false_positive + self.true_negative + self.false_negative + self.failed
-        return Share(self.true_positive + self.true_negative, n)
+        """Share judged right; what failed, and what could not be told, is not right."""
+        right = self.true_positive + self.true_negative
+        return Share(right, right + self.false_positive + self.false_negative + self.failed + self.undecided)
 
 
 @dataclass(frozen=True)
@@ -165,6 +166,7 @@ class Figures:
             cells["non-container", False],
             cells["container", False],
             len(self.trials) - len(judged),
+            sum(trial.is_undecided for trial in judged),
         )
 
     @property

@@ -148,6 +148,7 @@ def text_tables(evaluation: Evaluation) -> str:
             n_words=2,
         ),
         *(fill(line, WIDTH, subsequent_indent="  ") for line in _measure_lines(evaluation)),
+        *_undecided_lines(evaluation),
         "",
         "Table II: pours without a spilled candy, in %",
         text_table(
@@ -308,6 +309,17 @@ def _measure_lines(evaluation: Evaluation) -> list[str]:
         by_measure.setdefault(figures_of(evaluation, variant).measure, []).append(variant)
     by_measure.setdefault("Omega", []).append("the paper's")
     return [f"Judged by {measure_word(one)}: {', '.join(names)}." for one, names in by_measure.items()]
+
+
+def _undecided_lines(evaluation: Evaluation) -> list[str]:
+    """Name the objects of which it cannot be told, where there are any."""
+    lines = []
+    for variant in evaluation.variants:
+        names = [one.name for one in evaluation.of_variant(variant) if one.is_undecided]
+        if names:
+            said = f"Cannot tell ({variant}), counted as not right: {', '.join(names)}."
+            lines.append(fill(said, WIDTH, subsequent_indent="  "))
+    return lines
 
 
 def _margin_lines(evaluation: Evaluation) -> list[str]:

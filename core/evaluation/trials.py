@@ -58,6 +58,7 @@ class Trial(Scored):
         capacity_share: volume it holds as a share of its convex hull's; none if it was judged by Omega.
         capacity_candies: candies it holds, heaped ones too; none if not imagined.
         capacity_ml: bulk volume of these; none if not imagined.
+        unseen_ml: volume inside that no view saw, on which the answer depends; none where it does not.
         holds_rad: tilt up to which nothing leaves, in the worst direction; none if not imagined.
         p_chosen: P of the chosen pour (Eq. 4); none if it is no container.
         clean_at_least: chance that it spills nothing, the lower 95 % bound; none without tries.
@@ -86,6 +87,7 @@ class Trial(Scored):
     capacity_share: float | None = None
     capacity_candies: float | None = None
     capacity_ml: float | None = None
+    unseen_ml: float | None = None
     holds_rad: float | None = None
     p_chosen: float | None = None
     clean_at_least: float | None = None
@@ -106,11 +108,13 @@ class Trial(Scored):
     @property
     def is_judged_container(self) -> bool | None:
         """Whether the score exceeds its threshold; none if the object could not be judged."""
-        return None if self.score is None else self.score > self.threshold
+        return None if self.score is None or self.is_undecided else self.score > self.threshold
 
     @property
     def predicted(self) -> str:
         """What it was judged, in the words of the labels; empty if it could not be judged."""
+        if self.is_undecided:
+            return "cannot tell"
         return {True: "container", False: "non-container", None: ""}[self.is_judged_container]
 
     @property
@@ -119,6 +123,11 @@ class Trial(Scored):
         if self.label == "ambiguous":
             return None
         return self.is_judged_container == (self.label == "container")
+
+    @property
+    def is_undecided(self) -> bool:
+        """Whether the program said that it cannot tell; that is never right."""
+        return self.unseen_ml is not None
 
     @property
     def n_pours(self) -> int:

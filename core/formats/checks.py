@@ -26,11 +26,14 @@ from core.formats.tables import (
     Reconstruction,
     Risk,
     TableOutcome,
+    Unseen,
 )
 from core.formats.text import excerpt
 
 _TABLES: Mapping[tuple[str, str], type] = {
     ("reconstruction", "result.json"): Reconstruction,
+    ("reconstruction", "unseen.json"): Unseen,
+    ("collision", "unseen.json"): Unseen,
     ("quality", "quality.json"): Quality,
     ("mesh", "collision.json"): Collision,
     ("collision", "collision.json"): Collision,

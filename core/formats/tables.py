@@ -85,6 +85,12 @@ class Reconstruction(TypedDict):
     refinement: Corrections | None
 
 
+class Unseen(TypedDict):
+    """`unseen.json`."""
+
+    unseen_ml: FiniteFloat
+
+
 class View(TypedDict):
     """How good one view is."""
 
@@ -140,6 +146,8 @@ class Verdict(TypedDict):
     volume_ml: FiniteFloat
     n_load: Count
     holds_rad: FiniteFloat
+    unseen_ml: NotRequired[FiniteFloat]
+    other_share: NotRequired[FiniteFloat | None]
 
 
 class Drop(TypedDict):

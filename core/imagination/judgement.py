@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from core.imagination.capacity.basin import ML
 from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
 from core.imagination.results import Containability, Drop
 from core.imagination.retention.imagine import imagine_retention
 from core.imagination.retention.result import RETENTION_FILE, Retention
@@ -74,7 +75,7 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         return Judgement(settings.omega_threshold)
     if drop.footprint is None:
         nothing = Verdict(0.0, settings.capacity_threshold, 0.0, 0.0, 0, 0.0)
-        return Judgement(settings.omega_threshold, nothing)
+        return Judgement(settings.omega_threshold, _read_otherwise(context, model, nothing))
     capacity = imagine_capacity(context, model, drop)
     retention = imagine_retention(context, model, drop)
     verdict = Verdict(
@@ -85,7 +86,22 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         retention.n_load,
         retention.holds_rad,
     )
-    return Judgement(settings.omega_threshold, verdict, capacity, retention)
+    return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity, retention)
+
+
+def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
+    """Imagine what the unseen may be otherwise, where that could change the answer.
+
+    The verdict is that of the surface with the unseen solid: more room can only make it a container, and a
+    hole in its bottom only none.
+    """
+    unseen = model.unseen
+    other = None if unseen is None else unseen.leaky if verdict.is_container else unseen.roomy
+    if unseen is None or other is None:
+        return verdict
+    body = CollisionModel.exact(other)
+    share = capacity_share(context, body, imagine_drop(context, body))
+    return replace(verdict, unseen_ml=unseen.unseen_ml, other_share=share)
 
 
 def capacity_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:

@@ -144,6 +144,11 @@ class Containability(Drop):
         return self.exceeds_omega if self.verdict is None else self.verdict.is_container
 
     @property
+    def is_undecided(self) -> bool:
+        """Whether the verdict depends on what no view saw."""
+        return self.verdict is not None and self.verdict.is_undecided
+
+    @property
     def exceeds_omega(self) -> bool:
         """The paper's verdict: whether Omega exceeds its threshold."""
         return self.omega > self.omega_threshold

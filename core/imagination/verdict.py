@@ -18,6 +18,8 @@ class Verdict:
         volume_ml: the same in ml.
         n_load: candies it was tilted with.
         holds_rad: tilt up to which none of them left, in the worst direction.
+        unseen_ml: volume behind its openings that no view saw; zero if that could not matter.
+        other_share: `capacity_share` if the unseen is not solid, which could change the answer; else none.
     """
 
     capacity_share: float
@@ -26,11 +28,20 @@ class Verdict:
     volume_ml: float
     n_load: int
     holds_rad: float
+    unseen_ml: float = 0.0
+    other_share: float | None = None
 
     @property
     def is_container(self) -> bool:
-        """Whether what it holds makes it an open container."""
-        return self.capacity_share > self.threshold
+        """Whether what it holds makes it an open container, whatever the unseen is."""
+        return self.capacity_share > self.threshold and not self.is_undecided
+
+    @property
+    def is_undecided(self) -> bool:
+        """Whether the answer depends on what no view saw."""
+        if self.other_share is None:
+            return False
+        return (self.other_share > self.threshold) != (self.capacity_share > self.threshold)
 
     def to_table(self) -> dict[str, Any]:
         """Return plain JSON."""

@@ -13,6 +13,7 @@ from core.quality.verdict import assess
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
 from core.scan import crop_box_of, stored_scan
+from core.unseen_readings import UnseenReadings
 from core.workers import WorkerReporter
 
 
@@ -38,7 +39,9 @@ def quality_job(
     return assess(scan, volume, reconstruction, table_height_m=table_height_m), []
 
 
-def collision_job(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[CollisionModel, list[str]]:
+def collision_job(
+    mesh: TriangleMesh, parameters: CollisionParameters, unseen: UnseenReadings | None
+) -> tuple[CollisionModel, list[str]]:
     """Build the collision model; return the result and what the user should know."""
     reporter = WorkerReporter()
-    return build_collision_model(mesh, parameters, reporter), reporter.warnings
+    return build_collision_model(mesh, parameters, reporter, unseen), reporter.warnings

@@ -145,9 +145,11 @@ def _collide(given: Given) -> CollisionModel:
     surface, settings = given.surface, given.parameters.collision
     if isinstance(surface, GivenMesh) and surface.parts is not None and settings.method != "exact":
         return surface.parts
+    unseen = surface.unseen if isinstance(surface, Reconstruction) else None
     if isinstance(given.tools.runner, RunHere):
-        return build_collision_model(surface.mesh, settings, given.tools.reporter)
-    model: CollisionModel = given.in_worker(Task(collision_job, (surface.mesh, settings)), "collision")
+        return build_collision_model(surface.mesh, settings, given.tools.reporter, unseen)
+    task = Task(collision_job, (surface.mesh, settings, unseen))
+    model: CollisionModel = given.in_worker(task, "collision")
     return model
 
 

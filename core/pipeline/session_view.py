@@ -51,6 +51,11 @@ class VerdictFacts:
     n_in: int
     verdict: Verdict | None
 
+    @property
+    def is_undecided(self) -> bool:
+        """Whether the verdict depends on what no view saw."""
+        return self.verdict is not None and self.verdict.is_undecided
+
 
 @dataclass(frozen=True)
 class PoursFacts:

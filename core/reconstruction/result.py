@@ -15,6 +15,7 @@ from core.mesh import TriangleMesh
 from core.mesh_file import read_ply, write_ply
 from core.reconstruction.pose_health import PoseHealth, ViewHealth
 from core.scan.model import Scan
+from core.unseen_readings import UnseenReadings
 
 MESH_FILE = "mesh.ply"
 FACTS_FILE = "result.json"
@@ -30,6 +31,7 @@ class Reconstruction:
         truncation_m: the truncation that was used.
         pose_health: the table in every view, with the poses as recorded.
         refinement: how the poses were corrected; none if they were taken as recorded.
+        unseen: other surfaces that the views allow, where they did not see into an opening; else none.
     """
 
     mesh: TriangleMesh
@@ -37,10 +39,13 @@ class Reconstruction:
     truncation_m: float
     pose_health: PoseHealth
     refinement: Refinement | None = None
+    unseen: UnseenReadings | None = None
 
     def save(self, folder: Path) -> None:
-        """Write `mesh.ply` and `result.json` into an existing folder."""
+        """Write `mesh.ply` and `result.json` into an existing folder, and what the unseen may be."""
         write_ply(folder / MESH_FILE, self.mesh)
+        if self.unseen is not None:
+            self.unseen.save(folder)
         facts = {
             "platform_height_m": self.platform_height_m,
             "truncation_m": self.truncation_m,
@@ -64,7 +69,12 @@ class Reconstruction:
         except (KeyError, TypeError, ValueError) as error:
             raise SessionError(f"{folder / FACTS_FILE} is damaged ({error!r}).", Remedy.RUN_AGAIN) from error
         return Reconstruction(
-            read_ply(folder / MESH_FILE), height_m, truncation_m, PoseHealth(views), refinement
+            read_ply(folder / MESH_FILE),
+            height_m,
+            truncation_m,
+            PoseHealth(views),
+            refinement,
+            UnseenReadings.load(folder),
         )
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import StageError
+from core.geometry import BoolArray
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
@@ -34,7 +35,9 @@ from core.reconstruction.segmentation import (
     whole,
 )
 from core.reconstruction.tsdf import TsdfVolume, extract_surface, largest_piece
+from core.reconstruction.unseen import find_unseen_inside
 from core.scan.model import CropBox, Scan, crop_box_of
+from core.unseen_readings import UnseenReadings
 
 STAGE = "reconstruction"
 COARSE_VOXEL_M = 0.004
@@ -49,6 +52,8 @@ BEHIND_PER_FALLOFF = 2.5
 """There the weight has fallen to 0.002."""
 VOXELS_WITHOUT_TABLE = 5.0
 """The released code's, when the pose error is unknown."""
+SMALLEST_UNSEEN_ML = 2.0
+"""Room for two candies."""
 SURFACE_PER_TABLE_ERROR = 1.8
 """A surface of the object errs more than the table's height: a rotation of the camera shifts it sideways."""
 
@@ -83,7 +88,8 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
             found, scan, parameters, view_error_m(health, refinement), support_m, planes, steps
         )
     mesh = _object_mesh(found, parameters, support_m)
-    return Reconstruction(mesh, support_m, found.volume.truncation_m, health, refinement)
+    unseen = _unseen_readings(found, parameters, support_m) if parameters.unseen == "solid" else None
+    return Reconstruction(mesh, support_m, found.volume.truncation_m, health, refinement, unseen)
 
 
 @dataclass(frozen=True)
@@ -152,7 +158,27 @@ def _support_height_m(
     return estimate_m
 
 
-def _object_mesh(found: _Found, parameters: ReconstructionParameters, support_m: float) -> TriangleMesh:
+def _unseen_readings(
+    found: _Found, parameters: ReconstructionParameters, support_m: float
+) -> UnseenReadings | None:
+    """What else the object may be, where views ended inside its openings; none if none could matter."""
+    volume = found.volume
+    unseen = find_unseen_inside(volume, support_m)
+    room = unseen.room(volume.voxel_m)
+    unseen_ml = float(room.sum() * volume.voxel_m**3 * 1e6)
+    if unseen_ml < SMALLEST_UNSEEN_ML:
+        return None
+    roomy = _object_mesh(found, parameters, support_m, unseen.in_volume(room))
+    is_open = unseen.reaches_support(volume.voxel_m)
+    through = unseen.in_volume(unseen.region) | unseen.below_region(volume) if is_open else None
+    leaky = None if through is None else _object_mesh(found, parameters, support_m, through)
+    return UnseenReadings(unseen_ml, roomy, leaky)
+
+
+def _object_mesh(
+    found: _Found, parameters: ReconstructionParameters, support_m: float, freed: BoolArray | None = None
+) -> TriangleMesh:
+    """The object's surface; `freed` (X, Y, Z) are voxels of the volume that are free, whatever they were."""
     volume, table = found.volume, found.table
     solid = parameters.unseen == "solid"
     part = _down_to_support(found, support_m) if solid or table is not None else found.part
@@ -163,6 +189,8 @@ def _object_mesh(found: _Found, parameters: ReconstructionParameters, support_m:
         error_m = volume.falloff_m if np.isfinite(volume.falloff_m) else volume.voxel_m
         distance = keep_floor(distance, volume, part, support_m, error_m)
         distance = cut_at_height(distance, volume, part, support_m)
+    if freed is not None:
+        distance = np.where(freed[part.slices], np.float32(1.0), distance)
     mesh = extract_surface(distance, volume.centers_m(part.low), volume.voxel_m)
     if len(mesh.faces) == 0:
         raise StageError(

@@ -14,11 +14,14 @@ if TYPE_CHECKING:
 
 MM = 1000.0
 NO_POURS = "No pours were imagined because the object is not an open container."
+UNDECIDED_POURS = "No pours were imagined because too little of the inside was seen."
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 
-def verdict_words(is_open_container: bool | None) -> str:
+def verdict_words(is_open_container: bool | None, is_undecided: bool = False) -> str:
     """Return the verdict in two or three words; None: there is none yet."""
+    if is_undecided:
+        return "Cannot tell"
     if is_open_container is None:
         return "No verdict yet"
     return "Open container" if is_open_container else "Not a container"
@@ -27,10 +30,22 @@ def verdict_words(is_open_container: bool | None) -> str:
 def verdict_sentence(containability: Containability) -> str:
     """Say whether the object is an open container, and why."""
     verdict = "Open container" if containability.is_open_container else "Not an open container"
+    if containability.verdict is not None and containability.is_undecided:
+        return undecided_sentence(containability.verdict)
     if containability.verdict is not None:
         return f"{verdict}: {capacity_text(containability.verdict)}."
     omega, threshold = omega_texts(containability)
     return f"{verdict}: {_stayed(containability)} (Omega {omega}, the threshold is {threshold})."
+
+
+def undecided_sentence(verdict: Verdict) -> str:
+    """Say why there is no answer, and what would give one."""
+    solid, free = verdict.capacity_share > verdict.threshold, (verdict.other_share or 0.0) > verdict.threshold
+    answers = {True: "a container", False: "no container"}
+    return (
+        f"Cannot tell: {verdict.unseen_ml:.0f} ml inside were not seen. If that is solid, it is "
+        f"{answers[solid]}; if not, {answers[free]}. Look again from further views."
+    )
 
 
 def verdict_summary(
@@ -39,6 +54,7 @@ def verdict_summary(
     omega_threshold: float | None,
     capacity_share: float | None = None,
     capacity_threshold: float | None = None,
+    is_undecided: bool = False,
 ) -> str:
     """Say the same from what a list of sessions knows, where neither the counts nor the verdict are at hand.
 
@@ -48,10 +64,13 @@ def verdict_summary(
         omega_threshold: Omega_thr.
         capacity_share: what the object holds as a share of its convex hull; None if Omega decided.
         capacity_threshold: above which it is a container.
+        is_undecided: whether the answer depends on what no view saw.
     """
     if is_open_container is None or omega is None or omega_threshold is None:
         return f"{verdict_words(None)}: nothing has been imagined."
-    verdict = verdict_words(is_open_container)
+    verdict = verdict_words(is_open_container, is_undecided)
+    if is_undecided:
+        return f"{verdict}: too little of its inside was seen."
     if capacity_share is not None and capacity_threshold is not None:
         return (
             f"{verdict}: hollow for {percent(capacity_share)} of its bulk "
@@ -122,7 +141,7 @@ def pours_sentence(containability: Containability, grid: PourGrid | None, choice
     if grid is not None and choice is not None:
         return choice_sentence(grid, choice)
     if not containability.is_open_container:
-        return NO_POURS
+        return UNDECIDED_POURS if containability.is_undecided else NO_POURS
     if grid is None:
         return "The pours have not been imagined yet: the run ended before them."
     return "Pours were imagined but none was chosen."

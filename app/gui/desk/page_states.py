@@ -97,6 +97,8 @@ def _figure(workspace: Workspace, page: str) -> str:
     if view is None:
         return ""
     if page == "imagination" and view.verdict is not None:
+        if view.verdict.is_undecided:
+            return workspace.tr("cannot tell")
         is_container = view.verdict.is_open_container
         return workspace.tr("container") if is_container else workspace.tr("no container")
     if page == "pours" and "pouring" in view.records:

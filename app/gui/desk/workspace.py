@@ -130,6 +130,12 @@ class Workspace(QObject):
         verdict = self.view.verdict
         return None if verdict is None else verdict.is_open_container
 
+    @property
+    def is_undecided(self) -> bool:
+        """Whether the verdict, if it is up to date, depends on what no view saw."""
+        verdict = None if self.view is None else self.view.verdict
+        return self.is_container is False and verdict is not None and verdict.is_undecided
+
     def edit(self, parameters: Parameters, text: str) -> None:
         """Use other parameters from now on; `text` names the change for the undo menu."""
         if parameters != self.parameters:

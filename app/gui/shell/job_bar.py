@@ -135,13 +135,16 @@ class NextStep:
     words: str
 
 
-def next_step(states: dict[str, PageState], is_container: bool | None, shown: str) -> NextStep | None:
+def next_step(
+    states: dict[str, PageState], is_container: bool | None, shown: str, is_undecided: bool = False
+) -> NextStep | None:
     """Return the first step of the work that is not up to date; none when all is done.
 
     Args:
         states: of the pages.
         is_container: the verdict; none before there is one. Only a container is poured into.
         shown: the page that is shown: the arm only pours once the pours have been reviewed.
+        is_undecided: whether the verdict depends on what no view saw: then the scan needs more views.
     """
     translate = QCoreApplication.translate
     words = {
@@ -152,6 +155,8 @@ def next_step(states: dict[str, PageState], is_container: bool | None, shown: st
         "robot": translate("NextStep", "Next: let the arm pour"),
     }
     for page in WORK:
+        if page in ("pours", "robot") and is_undecided:
+            return NextStep("scan", translate("NextStep", "Next: look again from further views"))
         if page in ("pours", "robot") and is_container is False:
             return None
         if states[page].word == "fresh":

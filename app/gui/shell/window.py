@@ -316,7 +316,7 @@ class MainWindow(QMainWindow):
     def _show_next(self) -> None:
         """Offer the next step, but not on its own page: there the page's button says it."""
         workspace = self.desk.workspace
-        step = next_step(self._states, workspace.is_container, self.shown)
+        step = next_step(self._states, workspace.is_container, self.shown, workspace.is_undecided)
         is_offered = workspace.session is not None and step is not None and step.page != self.shown
         self.job_bar.show_next(step if is_offered else None)
 

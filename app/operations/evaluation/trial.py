@@ -161,6 +161,7 @@ def _of_verdict(verdict: Verdict | None) -> dict[str, Any]:
         "capacity_share": verdict.capacity_share,
         "capacity_candies": verdict.n_candies,
         "capacity_ml": verdict.volume_ml,
+        "unseen_ml": verdict.unseen_ml if verdict.is_undecided else None,
         "holds_rad": verdict.holds_rad,
     }
 

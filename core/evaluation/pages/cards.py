@@ -84,6 +84,8 @@ def judged_sentence(trial: Trial) -> str:
     """Say what was judged, and why."""
     if trial.score is None:
         return f"Failed: {trial.problem}"
+    if trial.unseen_ml is not None:
+        return f"The program cannot tell: {trial.unseen_ml:.0f} ml inside were not seen."
     if trial.capacity_share is not None:
         return _capacity_sentence(trial, trial.capacity_share)
     verdict = "a container" if trial.is_judged_container else "not to be a container"

@@ -189,6 +189,11 @@ def _remarks(evaluation: Evaluation, found: Figures) -> list[str]:
     if failed:
         what = "judgement failed and counts" if failed == 1 else "judgements failed and count"
         remarks.append(f"{failed} {what} as not right.")
+    undecided = found.confusion.undecided
+    if undecided:
+        remarks.append(
+            f"For {undecided} of {len(found.trials)} the program cannot tell, which counts as not right."
+        )
     return remarks
 
 

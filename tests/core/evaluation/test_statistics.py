@@ -39,6 +39,20 @@ def test_what_failed_is_not_right_and_the_ambiguous_do_not_count(small: Figures)
     assert "tissue <box>" not in small.names
 
 
+def test_what_cannot_be_told_is_not_right_and_no_failure_either() -> None:
+    trials = [
+        held("mug", "container", 0.6),
+        held("vase", "container", 0.02, unseen_ml=300.0),
+        held("pipe", "non-container", 0.4, unseen_ml=40.0, spilled=(), in_cup=()),
+        held("block", "non-container", 0.0),
+    ]
+    found = Figures.of(trials, N_POURS)
+    assert found.confusion == Confusion(1, 0, 1, 0, 0, undecided=2)
+    assert found.accuracy == Share(2, 4)
+    assert [one.predicted for one in trials] == ["container", "cannot tell", "cannot tell", "non-container"]
+    assert [one.is_right for one in trials] == [True, False, False, True]
+
+
 def test_a_right_refusal_counts_nowhere_and_a_wrong_one_as_spilled() -> None:
     doubted = {"clean_at_least": 0.3, "wanted_clean": 0.6}
     trials = [

@@ -1,9 +1,13 @@
 import pytest
 
+from core.collision import CollisionModel
 from core.imagination.judgement import Judgement
+from core.mesh import TriangleMesh
+from core.mesh_topology import join
 from core.parameters import apply_settings
 from core.pipeline.in_memory import imagine
 from core.progress import Reporter
+from core.unseen_readings import UnseenReadings
 
 FEW = {
     "containability.verdict": "capacity",
@@ -73,3 +77,33 @@ def test_a_judgement_survives_the_disk(dish_judged, tmp_path):
         assert (again.omega_threshold, again.verdict) == (case.omega_threshold, case.verdict)
         assert (again.capacity is None) == (case.capacity is None)
         assert (again.retention is None) == (case.retention is None)
+
+
+@pytest.fixture(scope="module")
+def pipe(dish) -> TriangleMesh:
+    """The dish without its floor."""
+    return join(dish.parts[1:])
+
+
+def test_a_solid_block_whose_inside_nobody_saw_may_be_a_dish(dish, block, few, pool):
+    moved = block.surface.translated(dish.aabb_min_m - block.aabb_min_m)
+    hidden = CollisionModel.exact(moved, UnseenReadings(120.0, dish.surface))
+    verdict = imagine(hidden, few, pool, Reporter()).containability.verdict
+    assert verdict.is_undecided and not verdict.is_container
+    assert verdict.other_share > 0.4
+    assert verdict.unseen_ml == 120.0
+
+
+def test_a_dish_whose_bottom_nobody_saw_may_be_a_pipe(dish, pipe, few, pool):
+    hidden = CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface, pipe))
+    found = imagine(hidden, few, pool, Reporter())
+    assert found.containability.is_undecided
+    assert found.containability.verdict.other_share < 0.02
+    assert found.grid is None, "nothing is poured into what may be a pipe"
+
+
+def test_the_unseen_does_not_matter_where_the_answer_stays(dish, few, pool):
+    hidden = CollisionModel.exact(dish.surface, UnseenReadings(10.0, dish.surface, dish.surface))
+    verdict = imagine(hidden, few, pool, Reporter()).containability.verdict
+    assert verdict.is_container and not verdict.is_undecided
+    assert verdict.other_share == verdict.capacity_share

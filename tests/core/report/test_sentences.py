@@ -157,3 +157,21 @@ def test_per_cent_have_the_decimals_they_need(share: float, text: str) -> None:
 )
 def test_durations_are_said_as_people_say_them(seconds: float, text: str) -> None:
     assert duration_text(seconds) == text
+
+
+def test_what_was_not_seen_is_said_with_both_answers(tray):
+    unseen = Verdict(0.02, 0.1, 3.0, 3.2, 3, 0.1, unseen_ml=240.0, other_share=0.6)
+    assert verdict_sentence(replace(tray, verdict=unseen)) == (
+        "Cannot tell: 240 ml inside were not seen. If that is solid, it is no container; if not, a "
+        "container. Look again from further views."
+    )
+    bottomless = Verdict(0.6, 0.1, 90.0, 95.0, 24, 1.0, unseen_ml=40.0, other_share=0.0)
+    found = replace(tray, verdict=bottomless)
+    assert verdict_sentence(found).startswith(
+        "Cannot tell: 40 ml inside were not seen. If that is solid, it is a"
+    )
+    assert not found.is_open_container
+    assert pours_sentence(found, None, None) == (
+        "No pours were imagined because too little of the inside was seen."
+    )
+    assert verdict_words(found.is_open_container, found.is_undecided) == "Cannot tell"

@@ -15,6 +15,8 @@ def verdict_mark(session: SessionSummary) -> tuple[str, str]:
     if session.problem:
         return "✕", "failed"
     signs = {True: ("✓", "good"), False: ("⊖", "text"), None: ("○", "muted")}
+    if session.is_undecided:
+        return "?", "attention"
     return signs[session.is_open_container]
 
 
@@ -22,7 +24,7 @@ def verdict_title(session: SessionSummary) -> str:
     """Return the verdict in two or three words."""
     if session.problem:
         return QCoreApplication.translate(_CONTEXT, "Cannot be read")
-    return verdict_words(session.is_open_container)
+    return verdict_words(session.is_open_container, session.is_undecided)
 
 
 def verdict_sentence(session: SessionSummary) -> str:
@@ -35,6 +37,7 @@ def verdict_sentence(session: SessionSummary) -> str:
         session.omega_threshold,
         session.capacity_share,
         session.capacity_threshold,
+        session.is_undecided,
     )
 
 

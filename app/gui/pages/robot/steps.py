@@ -141,6 +141,12 @@ def missing_for_a_pour(workspace: Workspace, is_container: bool | None) -> Missi
     if not all(workspace.is_fresh(stage) for stage in IMAGINED):
         said = translate("Missing", "Something they depend on has changed since. Imagine again.")
         return Missing(translate("Missing", "The pours are out of date"), said, *to_imagination)
+    if workspace.is_undecided:
+        said = translate(
+            "Missing",
+            "Whether candies would stay in it depends on what no view saw. Look again from further views.",
+        )
+        return Missing(translate("Missing", "Not known to be a container"), said, *to_scan)
     if is_container is False:
         said = translate(
             "Missing",

@@ -1,0 +1,114 @@
+"""What no view saw behind an object's openings: neither solid nor free, so both readings are kept.
+
+Where known free space ends at voxels that no view saw, the views could not look further. Around the object
+that is an ordinary shadow; within a closed ring of wall it is the inside of something that may hold candies,
+or the way through its bottom.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import binary_dilation, distance_transform_edt, generate_binary_structure, label
+
+from core.geometry import BoolArray
+from core.reconstruction.tsdf import TsdfVolume
+
+FREE_SHARE = 0.5
+"""Share of the truncation in front of the surface from which on a voxel is surely free."""
+SMALLEST_PATCH_M2 = 1e-4
+"""Smaller frontiers are gaps that noise leaves; 10 mm by 10 mm."""
+ALL_NEIGHBOURS = generate_binary_structure(3, 3)
+IN_LAYER = generate_binary_structure(3, 1) & np.array([False, True, False])
+"""The four neighbours within a horizontal layer; the last axis is z."""
+_FAR_M = 1e3
+"""Between layers: distances are taken within them."""
+THINNEST_WALL_M = 0.003
+"""What the roomiest reading leaves of walls and floor that nobody saw from inside."""
+
+
+@dataclass(frozen=True)
+class UnseenInside:
+    """Masks (X, Y, Z) over the layers of a volume from `first_layer` up.
+
+    Attributes:
+        outside: not within a closed ring of wall in its layer.
+        enclosed: within one, and not solid.
+        frontier: unseen voxels of it at which known free space ends.
+        region: the unseen that is joined to the frontier, the cores of walls and floors included.
+        first_layer: of the volume, just above the platform.
+    """
+
+    outside: BoolArray
+    enclosed: BoolArray
+    frontier: BoolArray
+    region: BoolArray
+    first_layer: int
+
+    def room(self, voxel_m: float) -> BoolArray:
+        """Return (X, Y, Z) what may be hollow of the region, with walls and floor as thin as they can be."""
+        within_layer = (voxel_m, voxel_m, _FAR_M)
+        away_m = distance_transform_edt(~self.outside, sampling=within_layer)
+        room: BoolArray = self.region & (away_m > THINNEST_WALL_M)
+        room[:, :, : int(np.ceil(THINNEST_WALL_M / voxel_m))] = False
+        return room
+
+    def reaches_support(self, voxel_m: float) -> bool:
+        """Whether so much of the region lies just above the platform that something may fall through."""
+        return bool(self.region[:, :, 0].sum() * voxel_m**2 > SMALLEST_PATCH_M2)
+
+    def in_volume(self, mask: BoolArray) -> BoolArray:
+        """Return a mask of these layers as one of the whole volume."""
+        return np.pad(mask, ((0, 0), (0, 0), (self.first_layer, 0)))
+
+    def below_region(self, volume: TsdfVolume) -> BoolArray:
+        """Return (X, Y, Z) the volume's unseen voxels between the region and the platform."""
+        below = np.zeros(volume.weight.shape, dtype=np.bool_)
+        columns = self.region[:, :, :1]
+        below[:, :, : self.first_layer] = columns & (volume.weight[:, :, : self.first_layer] == 0)
+        return below
+
+
+def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenInside:
+    """Find where the views ended inside openings; 50 ms at 4 mm.
+
+    Args:
+        volume: fused from the views; its wall must be closed in each layer, or the layer counts as open.
+        platform_height_m: of the support, in the base frame; what lies below it is not looked at.
+    """
+    first = (platform_height_m - volume.origin_m[2]) / volume.voxel_m
+    first_layer = int(np.clip(np.ceil(first + 1), 0, volume.weight.shape[2] - 1))
+    seen = volume.weight[:, :, first_layer:] > 0
+    distance = volume.distance[:, :, first_layer:]
+    solid = seen & (distance < 0)
+    outside = _outside_in_layer(solid)
+    enclosed = ~outside & ~solid
+    free = seen & (distance > FREE_SHARE)
+    frontier = enclosed & ~seen & binary_dilation(free & enclosed)
+    frontier = _large_patches(frontier, SMALLEST_PATCH_M2 / volume.voxel_m**2)
+    return UnseenInside(outside, enclosed, frontier, _connected_to(frontier, enclosed & ~seen), first_layer)
+
+
+def _outside_in_layer(solid: BoolArray) -> BoolArray:
+    """What a flood from the border of each horizontal layer reaches, around the solid."""
+    groups, _ = label(~solid, structure=IN_LAYER)
+    border = [groups[0], groups[-1], groups[:, 0], groups[:, -1]]
+    reached = np.unique(np.concatenate([edge.ravel() for edge in border]))
+    outside: BoolArray = np.isin(groups, reached) & ~solid
+    return outside
+
+
+def _large_patches(mask: BoolArray, fewest_voxels: float) -> BoolArray:
+    patches, _ = label(mask, structure=ALL_NEIGHBOURS)
+    is_large = np.bincount(patches.ravel()) >= fewest_voxels
+    is_large[0] = False
+    large: BoolArray = is_large[patches]
+    return large
+
+
+def _connected_to(seeds: BoolArray, mask: BoolArray) -> BoolArray:
+    """The groups of `mask` that hold a seed."""
+    groups, _ = label(mask)
+    held: BoolArray = mask & np.isin(groups, np.unique(groups[seeds]))
+    return held

@@ -1,0 +1,86 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from core.parameters.reconstruction import ReconstructionParameters
+from core.progress import Reporter
+from core.reconstruction.result import Reconstruction
+from core.reconstruction.stage import reconstruct
+from core.reconstruction.tsdf import TsdfVolume
+from core.reconstruction.unseen import THINNEST_WALL_M, find_unseen_inside
+from hardware.simulation.objects import builtin_object
+from tests.core.quality.studio import LOW_RINGS, on_platform, tube
+
+VOXEL_M = 0.004
+
+
+def shaft(unseen_below_m: float, floor_m: float = 0.0) -> TsdfVolume:
+    """A square shaft of 11 voxels within a wall of 3, 120 mm high, of which only the upper part was seen."""
+    volume = TsdfVolume((-0.06, -0.06, 0.0), (0.064, 0.064, 0.2), VOXEL_M, 0.016)
+    steps = np.arange(31) - 15
+    across = np.maximum(abs(steps[:, None]), abs(steps))[:, :, None]
+    layers = np.arange(50)[None, None]
+    volume.weight[:] = 1
+    volume.distance[(across > 5) & (across <= 8) & (layers < 30)] = -0.5
+    volume.weight[(across <= 5) & (layers < unseen_below_m / VOXEL_M)] = 0
+    is_floor = (across <= 5) & (layers < floor_m / VOXEL_M)
+    volume.weight[is_floor], volume.distance[is_floor] = 1, -0.5
+    return volume
+
+
+def test_an_unseen_shaft_may_be_hollow_but_for_a_floor_as_thin_as_floors_are():
+    unseen = find_unseen_inside(shaft(0.1), platform_height_m=0.0)
+    room = unseen.room(VOXEL_M)
+    assert room.sum(axis=(0, 1)).max() == 11 * 11
+    assert not room[:, :, : round(THINNEST_WALL_M / VOXEL_M)].any()
+    top = np.nonzero(unseen.in_volume(room).any(axis=(0, 1)))[0][-1]
+    assert top == 0.1 / VOXEL_M - 1
+
+
+def test_an_unseen_shaft_may_have_no_floor():
+    unseen = find_unseen_inside(shaft(0.1), platform_height_m=0.01)
+    assert unseen.reaches_support(VOXEL_M)
+    assert unseen.below_region(shaft(0.1))[:, :, : unseen.first_layer].sum() == 11 * 11 * unseen.first_layer
+
+
+def test_a_floor_that_was_seen_stays():
+    unseen = find_unseen_inside(shaft(0.1, floor_m=0.02), platform_height_m=0.0)
+    assert unseen.room(VOXEL_M).any()
+    assert not unseen.reaches_support(VOXEL_M)
+
+
+def reconstructed(mesh) -> Reconstruction:
+    return reconstruct(on_platform(mesh).scan(LOW_RINGS), ReconstructionParameters(), Reporter())
+
+
+@pytest.fixture(scope="module")
+def deep_tube() -> Reconstruction:
+    return reconstructed(tube(0.04, 0.15))
+
+
+def test_a_deep_vessel_is_told_apart_from_a_solid_one_and_from_a_pipe(deep_tube):
+    unseen = deep_tube.unseen
+    assert unseen is not None and unseen.leaky is not None
+    assert unseen.unseen_ml > 30
+    inside_ml = np.pi * 0.02**2 * 0.15 * 1e6
+    more_ml = 1e6 * (deep_tube.mesh.volume_m3 - unseen.roomy.volume_m3)
+    assert more_ml == pytest.approx(unseen.unseen_ml, rel=0.25)
+    assert more_ml < inside_ml
+    assert unseen.leaky.volume_m3 < unseen.roomy.volume_m3
+
+
+def test_it_survives_a_session(deep_tube, tmp_path):
+    deep_tube.save(tmp_path)
+    loaded = Reconstruction.load(tmp_path)
+    assert loaded.unseen is not None and loaded.unseen.leaky is not None
+    assert loaded.unseen.unseen_ml == deep_tube.unseen.unseen_ml
+    assert np.array_equal(loaded.unseen.leaky.faces, deep_tube.unseen.leaky.faces)
+
+
+@pytest.mark.parametrize("name", ["mug", "block"])
+def test_nothing_is_unseen_where_the_views_looked_everywhere(name, tmp_path):
+    found = reconstructed(builtin_object(name))
+    assert found.unseen is None
+    found.save(tmp_path)
+    assert Reconstruction.load(tmp_path).unseen is None
