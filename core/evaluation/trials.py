@@ -56,7 +56,7 @@ class Trial(Scored):
         n_drop: N_drop; 0 if it could not be judged.
         n_in: N_in.
         capacity_share: volume it holds as a share of its convex hull's; none if it was judged by Omega.
-        capacity_candies: candies it holds, heaped ones too; none if not imagined.
+        capacity_candies: candies it holds level with its rim; none if not imagined.
         capacity_ml: bulk volume of these; none if not imagined.
         unseen_ml: volume inside that no view saw, on which the answer depends; none where it does not.
         holds_rad: tilt up to which nothing leaves, in the worst direction; none if not imagined.

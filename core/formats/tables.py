@@ -146,6 +146,9 @@ class Verdict(TypedDict):
     volume_ml: FiniteFloat
     n_load: Count
     holds_rad: FiniteFloat
+    level_candies: NotRequired[FiniteFloat | None]
+    level_ml: NotRequired[FiniteFloat | None]
+    has_stand_ins: NotRequired[bool]
     unseen_ml: NotRequired[FiniteFloat]
     other_share: NotRequired[FiniteFloat | None]
 

@@ -85,6 +85,9 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         float(capacity.bulk_ml),
         retention.n_load,
         retention.holds_rad,
+        capacity.n_level,
+        capacity.volume_ml,
+        capacity.stand_in_diameter_m is not None,
     )
     return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity, retention)
 

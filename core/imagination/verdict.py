@@ -18,6 +18,10 @@ class Verdict:
         volume_ml: the same in ml.
         n_load: candies it was tilted with.
         holds_rad: tilt up to which none of them left, in the worst direction.
+        level_candies: of `n_candies`, those below the rim; none in records of earlier versions.
+        level_ml: what they take up in bulk, the volume of water that stands as high; none likewise.
+        has_stand_ins: whether larger balls were filled in place of candies: what they heap is no heap of
+            candies.
         unseen_ml: volume behind its openings that no view saw; zero if that could not matter.
         other_share: `capacity_share` if the unseen is not solid, which could change the answer; else none.
     """
@@ -28,6 +32,9 @@ class Verdict:
     volume_ml: float
     n_load: int
     holds_rad: float
+    level_candies: float | None = None
+    level_ml: float | None = None
+    has_stand_ins: bool = False
     unseen_ml: float = 0.0
     other_share: float | None = None
 

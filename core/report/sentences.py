@@ -110,10 +110,24 @@ def capacity_text(verdict: Verdict) -> str:
     hollow = f"hollow for {100 * verdict.capacity_share:.0f}{_NO_BREAK}% of its bulk {needed}"
     if verdict.n_candies < 0.5:
         return hollow
-    held = f"it holds {verdict.n_candies:.0f} candies ({verdict.volume_ml:.0f} ml). {hollow.capitalize()}"
+    held = f"{held_text(verdict)}. {hollow.capitalize()}"
     if verdict.is_container or verdict.n_load == 0:
         return held
     return f"{held}; tilted by more than {degrees(verdict.holds_rad):.0f} degrees it loses candies"
+
+
+def held_text(verdict: Verdict) -> str:
+    """Say how many candies an object holds: level with its rim, and heaped where that was imagined."""
+    level, level_ml = verdict.level_candies, verdict.level_ml
+    if level is None or level_ml is None:
+        return f"it holds {verdict.n_candies:.0f} candies ({verdict.volume_ml:.0f} ml)"
+    heaped = verdict.n_candies - level
+    if level < 0.5:
+        return f"{verdict.n_candies:.0f} candies stay on it, with no closed rim around them"
+    said = f"level with its rim it holds {level:.0f} candies ({level_ml:.0f} ml)"
+    if verdict.has_stand_ins or heaped < 0.5:
+        return said
+    return f"{said}, heaped {verdict.n_candies:.0f}"
 
 
 def omega_verdict_sentence(containability: Containability) -> str:

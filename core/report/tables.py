@@ -122,13 +122,21 @@ def retention_facts(capacity: Capacity | None, retention: Retention | None) -> d
     ]
     fill_mm, rim_mm = MM * capacity.fill_height_m, MM * capacity.rim_height_m
     return {
-        "Capacity": f"{capacity.n_candies:.0f} ± {capacity.spread:.0f} candies, {capacity.volume_ml:.0f} ml",
+        "Capacity, level with the rim": f"{capacity.n_level:.0f} candies, {capacity.volume_ml:.0f} ml",
+        **_heap_facts(capacity),
         "Water capacity": f"{capacity.geometric_volume_ml:.0f} ml",
         "Fill height": f"{fill_mm:.0f} of {rim_mm:.0f} mm",
         f"First of {retention.n_load} candies leaves at": leaving[0],
         "A tenth": leaving[1],
         "Half": leaving[2],
     }
+
+
+def _heap_facts(capacity: Capacity) -> dict[str, str]:
+    """With what is heaped; nothing where larger balls stood for candies."""
+    if capacity.stand_in_diameter_m is not None:
+        return {}
+    return {"Heaped": f"{capacity.n_candies:.0f} ± {capacity.spread:.0f} candies, {capacity.bulk_ml:.0f} ml"}
 
 
 def object_facts(surface: TriangleMesh, reconstruction: Reconstruction | None) -> dict[str, str]:

@@ -159,8 +159,8 @@ def _of_verdict(verdict: Verdict | None) -> dict[str, Any]:
         return {}
     return {
         "capacity_share": verdict.capacity_share,
-        "capacity_candies": verdict.n_candies,
-        "capacity_ml": verdict.volume_ml,
+        "capacity_candies": verdict.level_candies,
+        "capacity_ml": verdict.level_ml,
         "unseen_ml": verdict.unseen_ml if verdict.is_undecided else None,
         "holds_rad": verdict.holds_rad,
     }

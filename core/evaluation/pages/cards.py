@@ -19,6 +19,8 @@ TROUBLES: tuple[State, ...] = ("misjudged", "spilled", "failed")
 _SEVERITY: tuple[State, ...] = (*TROUBLES, "right", "ambiguous")
 _PICTURE_PX = (320, 240)
 _JPEG_QUALITY = 82
+_HEAP = 0.005
+"""A capacity share above which something lies there, below a rim or not."""
 _DECIMALS = (0, 1, 2, 3)
 _NBSP = "\N{NO-BREAK SPACE}"
 
@@ -210,10 +212,12 @@ def _held(trial: Trial) -> str:
     if trial.capacity_candies is None or trial.capacity_ml is None:
         return "It holds "
     n = round(trial.capacity_candies)
+    if n == 0 and (trial.capacity_share or 0.0) > _HEAP:
+        return "No candy lies below its rim; all that stays is "
     if n == 0:
         return "It holds less than one candy, " if trial.capacity_candies else "It holds no candy, "
     candies = f"{n} cand{'y' if n == 1 else 'ies'}"
-    return f"It holds {candies} ({trial.capacity_ml:.0f}{_NBSP}ml), "
+    return f"It holds {candies} ({trial.capacity_ml:.0f}{_NBSP}ml) level with its rim; all that stays is "
 
 
 def _strength(trial: Trial) -> str:

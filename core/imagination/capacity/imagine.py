@@ -16,8 +16,10 @@ from core.imagination.capacity.stand_in import (
     ball_of,
     bulk_ml,
     candy_itself,
+    smaller_candy,
 )
 from core.imagination.context import ImaginationContext
+from core.imagination.object_at_rest import ObjectAtRest
 from core.imagination.particle_shape import particle_volume_m3
 from core.imagination.results import Drop
 from core.mesh import TriangleMesh
@@ -25,6 +27,13 @@ from core.parameters import Parameters
 from core.workers import Task
 
 STAGE = "capacity"
+ARCH = "Candies only arch over an opening that they can pass: slightly smaller ones fall through."
+_HEAPED = 0.5
+"""Share of what stays that lies below a rim, below which an arch is possible."""
+_SMALLER = 0.7
+"""Size of smaller candies: over an opening that a candy just passes, they hardly arch."""
+_ARCHES = 0.5
+"""A heap of smaller candies is hardly smaller."""
 _SMALLEST_CANDIES = 1.0
 """A hollow counts when its bulk holds so many."""
 _USUAL_FRACTION = 0.6
@@ -50,8 +59,35 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
     if plan.stand_in.scale > 1:
         task = _basin_task(surface, plan.stand_in.particle.diameter_m, parameters)
         plan = _without_plugs(plan, basin, context.run([task], STAGE)[0])
+    fillings = _fill(context, target, plan)
+    if _is_mostly_heaped(fillings):
+        smaller = _of_smaller_candies(plan, parameters)
+        also = _fill(context, target, smaller)
+        if _bulk_ml(smaller, also, basin) < _ARCHES * _bulk_ml(plan, fillings, basin):
+            return replace(_result(smaller, basin, also, surface, parameters), explanation=ARCH)
+    return _result(plan, basin, fillings, surface, parameters)
+
+
+def _fill(context: ImaginationContext, target: ObjectAtRest, plan: FillPlan) -> tuple[Filling, ...]:
+    parameters = context.parameters
     tasks = [filling_task(target, plan, k, parameters) for k in range(parameters.capacity.n_fillings)]
-    return _result(plan, basin, tuple(context.run(tasks, STAGE)), surface, parameters)
+    return tuple(context.run(tasks, STAGE))
+
+
+def _is_mostly_heaped(fillings: tuple[Filling, ...]) -> bool:
+    """Whether most of what stays lies above any rim: a heap on a floor, or an arch over an opening."""
+    return sum(one.n_level for one in fillings) < _HEAPED * sum(one.n_kept for one in fillings)
+
+
+def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:
+    """Smaller ones form a heap as well, but no arch over an opening that candies pass one by one."""
+    stand_in = smaller_candy(parameters, _SMALLER)
+    n_expected = plan.n_expected * (plan.stand_in.scale / _SMALLER) ** 3
+    return replace(plan, stand_in=stand_in, n_expected=n_expected)
+
+
+def _bulk_ml(plan: FillPlan, fillings: tuple[Filling, ...], basin: Basin) -> float:
+    return fmean(one.n_kept for one in fillings) * bulk_ml(plan.stand_in.particle, basin.around)
 
 
 def _basin_task(surface: TriangleMesh, thickness_m: float, parameters: Parameters) -> Task:
@@ -106,7 +142,9 @@ def _result(
     per_particle = bulk_ml(plan.stand_in.particle, basin.around)
     counts = [filling.n_kept * per_particle / per_candy for filling in fillings] or [0.0]
     volume = fmean([filling.n_level for filling in fillings] or [0.0]) * per_particle
-    facts = _facts(basin, fillings, per_particle, volume, surface, parameters)
+    # Candies that lie against the rim reach above it: no more than the hollow is level.
+    volume = min(volume, basin.candies_ml)
+    facts = _facts(plan, basin, fillings, per_particle, volume, surface, parameters)
     heights = basin.heights_m - basin.heights_m[0] if len(basin.heights_m) else np.empty(0)
     return Capacity(
         n_candies=fmean(counts),
@@ -131,6 +169,7 @@ def _result(
 
 
 def _facts(
+    plan: FillPlan,
     basin: Basin,
     fillings: tuple[Filling, ...],
     per_particle: float,
@@ -143,7 +182,8 @@ def _facts(
     foot_m = float(surface.aabb_min_m[2])
     return Facts(
         imagined_ml=volume_ml,
-        heaped_ml=fmean([one.n_kept - one.n_level for one in fillings] or [0.0]) * per_particle,
+        heaped_ml=fmean([one.n_kept for one in fillings] or [0.0]) * per_particle - volume_ml,
+        has_stand_ins=plan.stand_in.scale > 1,
         water_ml=basin.water_ml,
         hollow_ml=basin.candies_ml,
         narrow_ml=basin.narrow_ml,
@@ -170,6 +210,7 @@ class Facts:
     Attributes:
         imagined_ml: bulk volume of the candies that stay.
         heaped_ml: bulk volume of the candies above the rim.
+        has_stand_ins: whether larger balls were filled in place of candies.
         water_ml: geometric volume.
         hollow_ml: geometric volume for what is as thick as a candy.
         narrow_ml: water where no candy goes.
@@ -183,6 +224,7 @@ class Facts:
 
     imagined_ml: float
     heaped_ml: float
+    has_stand_ins: bool
     water_ml: float
     hollow_ml: float
     narrow_ml: float
@@ -197,7 +239,7 @@ class Facts:
 def explain(facts: Facts) -> str:
     """Return sentences on the difference; empty when the volumes agree and hardly anything is heaped."""
     heap = ""
-    if facts.heaped_ml > AGREE_SHARE * max(facts.imagined_ml, facts.water_ml):
+    if not facts.has_stand_ins and facts.heaped_ml > AGREE_SHARE * max(facts.imagined_ml, facts.water_ml):
         where = "where nothing is closed all around" if np.isnan(facts.rim_m) else "above the rim"
         heap = f"Candies for {facts.heaped_ml:.0f} ml lie heaped {where}."
     return " ".join(sentence for sentence in (_difference(facts), heap) if sentence)

@@ -41,11 +41,23 @@ def candy_itself(parameters: Parameters) -> StandIn:
     return StandIn(1.0, parameters.particle, parameters.containability.contact, parameters.solver)
 
 
+def smaller_candy(parameters: Parameters, scale: float) -> StandIn:
+    """Return a candy of the same shape, `scale` times as large."""
+    candy, contact = parameters.particle, parameters.containability.contact
+    particle = candy.model_copy(
+        update={
+            "diameter_m": scale * candy.diameter_m,
+            "height_m": scale * candy.height_m,
+            "mass_kg": scale**3 * candy.mass_kg,
+        }
+    )
+    return StandIn(scale, particle, _slowed(contact, scale), parameters.solver)
+
+
 def ball_of(parameters: Parameters, scale: float) -> StandIn:
     """Return a ball of `scale` cubed times the volume of a candy.
 
-    A ball costs a fifth of an ellipsoid, for spheres meet a surface in closed form. The resistance to rolling
-    and spinning has the dimension of a length in Bullet, so it grows with the size; to fall its own size a
+    A ball costs a fifth of an ellipsoid, for spheres meet a surface in closed form. To fall its own size a
     larger ball takes longer by the root of the scale, so the steps do too.
     """
     candy, contact = parameters.particle, parameters.containability.contact
@@ -56,19 +68,23 @@ def ball_of(parameters: Parameters, scale: float) -> StandIn:
             "mass_kg": scale**3 * candy.mass_kg,
         }
     )
-    slowed = contact.model_copy(
-        update={
-            "rolling_friction": scale * contact.rolling_friction,
-            "spinning_friction": scale * contact.spinning_friction,
-        }
-    )
     solver = parameters.solver.model_copy(
         update={
             "rate_hz": max(round(parameters.solver.rate_hz / sqrt(scale)), _LEAST_RATE_HZ),
             "substeps": min(parameters.solver.substeps, _BALL_SUBSTEPS),
         }
     )
-    return StandIn(scale, ball, slowed, solver)
+    return StandIn(scale, ball, _slowed(contact, scale), solver)
+
+
+def _slowed(contact: ContactParameters, scale: float) -> ContactParameters:
+    """The resistance to rolling and spinning has the dimension of a length in Bullet."""
+    return contact.model_copy(
+        update={
+            "rolling_friction": scale * contact.rolling_friction,
+            "spinning_friction": scale * contact.spinning_friction,
+        }
+    )
 
 
 @dataclass(frozen=True)

@@ -21,19 +21,26 @@ def said(share: float, n_candies: float, ml: float, holds_rad: float, threshold:
 
 def test_the_sentence_of_a_container() -> None:
     assert said(0.508, 242.4, 263.7, radians(42)) == (
-        "It holds 242 candies (264 ml), 51 % of its convex hull, more than the threshold of 10 %; "
-        "nothing falls out up to a tilt of 42 degrees."
+        "It holds 242 candies (264 ml) level with its rim; all that stays is 51 % of its convex hull, more "
+        "than the threshold of 10 %; nothing falls out up to a tilt of 42 degrees."
     )
 
 
 @pytest.mark.parametrize(
     ("facts", "start"),
     [
-        ((0.02, 8.0, 9.1, radians(6)), "It holds 8 candies (9 ml), 2 % of its convex hull, not more than"),
+        (
+            (0.02, 8.0, 9.1, radians(6)),
+            "It holds 8 candies (9 ml) level with its rim; all that stays is 2 % of its convex hull, not",
+        ),
         ((0.01, 1.2, 1.0, radians(6)), "It holds 1 candy (1 ml)"),
         (
             (0.0, 0.0, 0.0, 0.0),
             "It holds no candy, 0 % of its convex hull, not more than the threshold of 10",
+        ),
+        (
+            (0.18, 0.0, 0.0, 0.0),
+            "No candy lies below its rim; all that stays is 18 % of its convex hull, more",
         ),
         ((0.001, 0.4, 0.4, 0.0), "It holds less than one candy, 0 % of"),
     ],

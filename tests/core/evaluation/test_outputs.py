@@ -96,6 +96,7 @@ def test_the_summary_is_a_contract(tmp_path: Path) -> None:
         "true_negative": 4,
         "false_negative": 1,
         "failed": 1,
+        "undecided": 0,
     }
     assert found["intervals"]["accuracy"] == pytest.approx([0.3968, 0.8922], abs=1e-4)
     (margin,) = found["margins"]

@@ -16,7 +16,7 @@ from core.report import (
     verdict_summary,
     verdict_words,
 )
-from core.report.sentences import direction_text, duration_text, percent
+from core.report.sentences import direction_text, duration_text, held_text, percent
 
 
 def test_verdict(tray: Containability, block: Containability) -> None:
@@ -157,6 +157,15 @@ def test_per_cent_have_the_decimals_they_need(share: float, text: str) -> None:
 )
 def test_durations_are_said_as_people_say_them(seconds: float, text: str) -> None:
     assert duration_text(seconds) == text
+
+
+def test_level_and_heap_are_two_figures_and_balls_make_no_heap(tray):
+    pan = Verdict(0.9, 0.1, 1310.0, 1442.0, 24, 1.0, level_candies=740.0, level_ml=805.0)
+    assert held_text(pan) == "level with its rim it holds 740 candies (805 ml), heaped 1310"
+    assert held_text(replace(pan, has_stand_ins=True)) == "level with its rim it holds 740 candies (805 ml)"
+    lid = Verdict(0.03, 0.1, 12.0, 13.0, 12, 0.1, level_candies=0.0, level_ml=0.0)
+    assert held_text(lid) == "12 candies stay on it, with no closed rim around them"
+    assert "level with its rim" in verdict_sentence(replace(tray, verdict=pan))
 
 
 def test_what_was_not_seen_is_said_with_both_answers(tray):

@@ -6,6 +6,7 @@ from core.imagination.capacity.imagine import Facts, explain
 AGREEING = Facts(
     imagined_ml=300,
     heaped_ml=0,
+    has_stand_ins=False,
     water_ml=310,
     hollow_ml=310,
     narrow_ml=0,
@@ -32,6 +33,7 @@ def test_more_than_water_by_a_gap():
 
 def test_a_heap():
     assert explain(replace(AGREEING, heaped_ml=90)) == "Candies for 90 ml lie heaped above the rim."
+    assert explain(replace(AGREEING, heaped_ml=90, has_stand_ins=True)) == "", "balls heap otherwise"
     flat = replace(AGREEING, imagined_ml=0, water_ml=0, heaped_ml=9, rim_m=nan)
     assert "nothing is closed all around" in explain(flat)
 
