@@ -24,8 +24,6 @@ MAX_FACES = 2_000_000
 """More are refused before they are read: at 5 million, simplifying alone would take minutes and gigabytes."""
 MAX_EXTENT_M = 3.0
 MIN_EXTENT_M = 0.005
-MAX_CROWDED_SHARE = 0.02
-"""Share of non-manifold edges above which inside and outside are undefined; good models have up to 0.013."""
 _CENTIMETRES_BELOW = 30.0
 """A larger number is taken for millimetres: household objects measure 3 to 30 cm, 30 mm and more."""
 _CHUNK_BYTES = 1 << 24
@@ -41,12 +39,13 @@ _PLY_HEADER = (
 def read_mesh(path: Path, reporter: Reporter) -> TriangleMesh:
     """Read all parts of an OBJ, PLY, STL, OFF or GLB file as one mesh, in metres and z up.
 
-    Equal vertices are joined; faces without area and unused vertices are dropped. A few non-manifold edges or
-    faces wound opposite to their neighbours are reported as warnings.
+    Equal vertices are joined; faces without area and unused vertices are dropped. Non-manifold edges and
+    faces wound opposite to their neighbours are reported as warnings: rays and candies meet a surface,
+    whether or not it encloses a volume.
 
     Raises:
-        InputError: the file is missing, unreadable, empty, not in metres, inside out, full of non-manifold
-            edges or has more than two million faces.
+        InputError: the file is missing, unreadable, empty, not in metres, inside out or has more than two
+            million faces.
     """
     parts = read_mesh_parts(path, reporter)
     mesh = join(parts)
@@ -232,18 +231,16 @@ def _check_size(path: Path, extent_m: float) -> None:
 
 def _check_topology(path: Path, mesh: TriangleMesh, reporter: Reporter) -> None:
     facts = topology(mesh)
-    if facts.n_crowded > MAX_CROWDED_SHARE * facts.n_edges:
-        raise InputError(
-            f"{path} is non-manifold: {facts.n_crowded} of its {facts.n_edges} edges belong to more than two "
-            "faces, so inside and outside are undefined; repair it in a mesh tool."
-        )
     if facts.is_closed and facts.is_consistent and mesh.volume_m3 < 0:
         raise InputError(
             f"{path} is inside out: its faces point inwards (volume {mesh.volume_m3 * 1e6:.0f} ml); "
             "flip them in a mesh tool."
         )
     if facts.n_crowded:
-        reporter.warn(f"{path} has {facts.n_crowded} non-manifold edges, shared by more than two faces.")
+        reporter.warn(
+            f"{path} has {facts.n_crowded} non-manifold edges, shared by more than two faces: it is taken as "
+            "a surface, and its volume is unknown."
+        )
     if not facts.is_consistent:
         reporter.warn(f"{path} has neighbouring faces wound to opposite sides; its volume is unknown.")
 

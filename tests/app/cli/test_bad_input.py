@@ -8,6 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from app.operations.evaluation.placed_object import place_object
+from app.operations.scanning import object_mesh
+from core.progress import Reporter
+
 BOX_OBJ = """
 v 0 0 0
 v {x} 0 0
@@ -142,10 +146,13 @@ def test_a_mesh_of_five_million_faces_is_refused_at_once(tmp_path, refused):
     assert "5,000,000 faces" in refused("imagine", path)
 
 
-def test_a_non_manifold_mesh_is_refused(tmp_path, refused):
+def test_a_non_manifold_mesh_is_scanned_and_judged_with_a_warning(tmp_path, poursight):
     path = box_file(tmp_path / "fin.obj")
     path.write_text(path.read_text() + "v 0.04 0.04 0.12\nf 5 7 9\n")
-    assert "non-manifold" in refused("imagine", path)
+    code, out, err = poursight("imagine", path, "--session", tmp_path / "judged")
+    assert (code, "ot an open container" in out) == (0, True), err
+    assert "1 non-manifold edges" in err and "taken as a surface" in err
+    assert len(place_object(object_mesh(str(path), Reporter()), "scan", 0).true.faces) == 13
 
 
 @pytest.mark.parametrize(
