@@ -171,6 +171,15 @@ def test_settings_that_cannot_be_met(settings, said, tmp_path, refused):
     assert said in refused("imagine", path, *words)
 
 
+@pytest.mark.parametrize("command", ["imagine", "reconstruct", "report"])
+def test_a_folder_that_may_not_be_read_is_one_sentence(command, tmp_path, monkeypatch, poursight):
+    monkeypatch.setattr("app.cli.options.os.access", lambda path, mode: False)
+    code, out, err = poursight(command, tmp_path)
+    assert (code, out) == (1, "")
+    assert err.strip().endswith("cannot be read (Permission denied); make it readable.")
+    assert err.count("\n") == 1
+
+
 def test_an_unknown_preset_object_or_session(tmp_path, refused):
     assert "did you mean 'authors'" in refused("imagine", tmp_path / "x.obj", "--preset", "author")
     assert "did you mean 'mug'" in refused("demo", "--object", "mugg", "--out", tmp_path / "demo")
