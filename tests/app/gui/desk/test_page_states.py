@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 
 from app.gui.desk.page_states import PageState, page_states, with_failure
+from app.gui.pages.robot.steps import missing_for_a_pour
 from app.gui.shell.job_bar import next_step
 from core.session.pour_runs import Outcome, write_outcome
 
 
 def _next(workspace, shown="scan"):
-    step = next_step(page_states(workspace, None), workspace.is_container, shown)
+    step = next_step(page_states(workspace, None), workspace.is_container, shown, workspace.is_undecided)
     return None if step is None else step.page
 
 
@@ -67,3 +68,28 @@ def test_nothing_is_poured_into_what_is_no_container(desk, block_session):
     assert desk.workspace.is_container is False
     assert _next(desk.workspace) is None
     assert page_states(desk.workspace, None)["imagination"].figure == "no container"
+
+
+def test_what_was_not_seen_is_looked_at_again(desk, block_session):
+    """The block's verdict, as if 90 ml behind an opening had not been seen."""
+    path = block_session / "judgement" / "judgement.json"
+    table = json.loads(path.read_text())
+    verdict = {"capacity_share": 0.01, "threshold": 0.1, "n_candies": 0.0, "volume_ml": 0.0, "n_load": 0}
+    verdict |= {"holds_rad": 0.0, "unseen_ml": 90.0, "other_share": 0.6}
+    path.write_text(json.dumps(table | {"verdict": verdict}))
+    _of_this_size(block_session / "judgement", path)
+    desk.workspace.open(block_session)
+    assert desk.workspace.is_container is False and desk.workspace.is_undecided
+    assert page_states(desk.workspace, None)["imagination"].figure == "cannot tell"
+    assert _next(desk.workspace, shown="imagination") == "scan"
+    missing = missing_for_a_pour(desk.workspace, desk.workspace.is_container)
+    assert missing is not None and missing.page == "scan"
+    assert "no view saw" in missing.text
+
+
+def _of_this_size(stage, path):
+    """A stage is whole if its files have the sizes on its record."""
+    record = stage / "record.json"
+    table = json.loads(record.read_text())
+    table["files"][path.name] = path.stat().st_size
+    record.write_text(json.dumps(table))
