@@ -65,8 +65,8 @@ class Theme:
     ghost: str
 
     def color(self, name: str) -> QColor:
-        """Return a named colour for painting."""
-        return QColor(getattr(self, name))
+        """Return a named colour for painting, or the one that is `#rrggbb` in every theme."""
+        return QColor(name if name.startswith("#") else getattr(self, name))
 
     @property
     def is_dark(self) -> bool:

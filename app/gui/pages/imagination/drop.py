@@ -9,11 +9,13 @@ from typing import Literal
 import numpy as np
 
 from app.gui.views.scene import PreparedMesh, prepare_mesh
+from app.gui.views.scene.shapes import Shape
 from core.geometry import BoolArray, FloatArray
 from core.imagination.capacity.result import Capacity
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Float32Array, Recording
-from core.imagination.rendering.replay import lowest_point_m, make_replay
+from core.imagination.rendering.replay import make_replay, standing
+from core.imagination.rendering.shapes import candy_mesh
 from core.imagination.results import Containability
 from core.imagination.retention.result import Retention
 from core.mesh import TriangleMesh
@@ -23,7 +25,6 @@ from core.pipeline.session_view import SessionView
 
 PhaseKey = Literal["drop", "tilt_x", "tilt_y", "push"]
 N_PUSHES = 4
-_GROUND_GAP_M = 0.0005
 _OUTLINE_DIRECTIONS = 180
 _NEAR = 0.6
 """How far from the object, as a share of its size, a fallen candy still belongs to the picture."""
@@ -62,6 +63,15 @@ class Moments:
         before, after, share = self._around(time_s)
         positions = self._recording.positions_m
         between: Float32Array = positions[before] + share * (positions[after] - positions[before])
+        return between
+
+    def quaternions(self, time_s: float) -> Float32Array:
+        """Return the candies' orientations (N, 4), (x, y, z, w); not of length one between two moments."""
+        before, after, share = self._around(time_s)
+        first, second = self._recording.quaternions[before], self._recording.quaternions[after]
+        is_opposite = np.einsum("ij,ij->i", first, second) < 0
+        nearer = np.where(is_opposite[:, None], -second, second)
+        between: Float32Array = first + share * (nearer - first)
         return between
 
     def T_world_body(self, time_s: float) -> FloatArray:
@@ -108,8 +118,8 @@ class ShownDrop:
         phases: what happened when.
         n_on_top: candies that lie on the object at the end, but not in its bounding box.
         body: the surface that the physics knew.
-        candy_radius_m: of a ball of about a candy's volume.
-        ground_m: height of the ground, just below everything the object reaches.
+        candy: what the physics took a candy for, about its centre.
+        ground_m: height of the ground, on which the object stands.
         ground_radius_m: wide enough for what fell near the object.
         outline_m: (n, 2) the object from above, its hull.
         indents_m: distances of the pivots from the footprint's centre; empty without pours.
@@ -126,7 +136,7 @@ class ShownDrop:
     phases: tuple[Phase, ...]
     n_on_top: int
     body: PreparedMesh
-    candy_radius_m: float
+    candy: Shape
     ground_m: float
     ground_radius_m: float
     outline_m: FloatArray
@@ -156,10 +166,9 @@ def load(key: DropKey) -> ShownDrop | None:
     settings, particle = parameters.containability, parameters.particle
     session, capacity, retention = view.session, judgement.capacity, judgement.retention
     surface = CollisionModel.load(session.folder("collision")).surface
-    ground_m = lowest_point_m(surface, containability.recording.T_world_body) - _GROUND_GAP_M
-    # As balls the candies are as thick as they are wide: so thick they lie on the ground.
-    radius_m = float(np.prod(particle_extents_m(particle)) ** (1 / 3)) / 2
-    replay = make_replay(containability.recording, containability.retained, ground_m, 2 * radius_m)
+    recording, ground_m = standing(containability.recording, surface)
+    candy = candy_mesh(particle)
+    replay = make_replay(recording, containability.retained, ground_m, particle_extents_m(particle))
     return ShownDrop(
         containability=containability,
         capacity=capacity,
@@ -174,7 +183,7 @@ def load(key: DropKey) -> ShownDrop | None:
         phases=phases_of(containability, settings),
         n_on_top=_n_on_top(containability),
         body=prepare_mesh(surface.vertices_m, surface.faces),
-        candy_radius_m=radius_m,
+        candy=(candy.vertices_m, candy.faces),
         ground_m=ground_m,
         ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1], replay.retained),
         outline_m=_outline_m(surface),

@@ -14,7 +14,7 @@ from app.gui.pages.imagination.drop import PhaseKey, ShownDrop, push_of
 from app.gui.pages.layouts import lay_around
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.film_strip import FilmStrip, Picture
-from app.gui.views.scene import Scene3D, cylinder_mesh
+from app.gui.views.scene import Scene3D, candy_legend, cylinder_mesh
 from app.gui.views.timeline import Section, Timeline
 from core.geometry import FloatArray, make_pose
 
@@ -95,7 +95,7 @@ class DropReplay(QWidget):
         disc = cylinder_mesh(drop.ground_radius_m, _GROUND_THICK_M)
         self.scene.set_mesh("ground", *disc, color="line", T_world=make_pose(np.eye(3), under_m))
         self.scene.set_line("start", _rectangle_m(found.drop_positions_m), color="muted", width_px=1)
-        self.scene.set_candies("candies", found.n_drop, drop.candy_radius_m, found.retained)
+        self.scene.set_candies("candies", found.n_drop, drop.candy, found.retained)
 
     def _show_body(self) -> None:
         if self._drop is not None:
@@ -107,7 +107,8 @@ class DropReplay(QWidget):
         if drop is None:
             self._now.clear()
             return
-        self.scene.set_candy_positions("candies", drop.moments.positions_m(time_s))
+        moments = drop.moments
+        self.scene.set_candy_poses("candies", moments.positions_m(time_s), moments.quaternions(time_s))
         self.scene.set_pose("object", drop.moments.T_world_body(time_s))
         self._now.setText(self._words(drop, time_s))
 
@@ -129,14 +130,11 @@ class DropReplay(QWidget):
         if self._drop is None:
             self._legend.clear()
             return
-        theme, found = theme_of(self), self._drop.containability
+        found = self._drop.containability
         kept = self.tr("{n} kept").format(n=found.n_in)
         lost = self.tr("{n} lost").format(n=found.n_drop - found.n_in)
         self._legend.setTextFormat(Qt.TextFormat.RichText)
-        self._legend.setText(
-            f'<span style="color:{theme.kept}">●</span> {kept} &nbsp; '
-            f'<span style="color:{theme.lost}">◆</span> {lost}'
-        )
+        self._legend.setText(candy_legend(theme_of(self), kept, lost))
 
     @override
     def changeEvent(self, event: QEvent) -> None:

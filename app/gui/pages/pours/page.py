@@ -332,11 +332,11 @@ class PourScene(QWidget):
         if pours is None or pours.grid is None:
             return
         grid = pours.grid
-        recording = grid.recordings[i][j]
+        recording = pours.replay(i, j)
         self._recording = None  # the time line reports its time while it is set
         self._times_s = recording.time_s.astype(float).tolist()
         n = recording.positions_m.shape[1]
-        self.scene.set_candies(CANDIES, n, pours.candy_radius_m, pours.landed(i, j))
+        self.scene.set_candies(CANDIES, n, pours.candy, pours.landed(i, j))
         self.scene.set_points(PIVOT, grid.pivot_m[i, j], color="accent", size_px=13)
         self.scene.set_arrow(ARROW, *_arrow(pours, grid, i), color="accent")
         duration_s = self._times_s[-1] if self._times_s else 0.0
@@ -359,7 +359,7 @@ class PourScene(QWidget):
             return
         k = max(bisect_right(self._times_s, time_s + 1e-6) - 1, 0)
         self.scene.set_pose(CUP, recording.T_world_body[k].astype(float))
-        self.scene.set_candy_positions(CANDIES, recording.positions_m[k])
+        self.scene.set_candy_poses(CANDIES, recording.positions_m[k], recording.quaternions[k])
 
     def _pick(self, name: str, index: int) -> None:
         if name == PIVOTS and self._pours is not None and self._pours.grid is not None:

@@ -149,8 +149,8 @@ class Paint:
     """How a part gets its colours; names are fields of `Theme`, so that it follows a change of theme.
 
     Attributes:
-        names: of colours; of everything if there is no `which`.
-        which: (N,) index of each vertex's name.
+        names: of colours, or `#rrggbb` of what has a colour of its own; of everything if there is no `which`.
+        which: (N,) index of each vertex's, or instance's, name.
         values: (N,) what a scale colours instead; where it is NaN the first name is used.
         scale: of the values.
         opacity: 0 to 1.
@@ -185,7 +185,12 @@ class Part:
         paint: its colours.
         normals: (N, 3) of a surface.
         indices: (M,) of the vertices: three for each triangle, two for each segment; None: in their order.
+        poses: (K, 7) position in m and unit quaternion (x, y, z, w) of each instance of an indexed, closed
+            surface whose faces are counter-clockwise from outside; zeros for an absent one. None: it is
+            drawn once, where it is.
         size_px: width of lines, size of points.
+        gloss: how much a surface shines, 0 to 1.
+        is_rim: whether only the faces that turn away are drawn, unlit: a rim around what is in it.
         is_on_top: whether nothing hides it.
         T_layer_part: (4, 4) pose in its layer.
         revision: counts changes of the vertices.
@@ -196,7 +201,10 @@ class Part:
     paint: Paint
     normals: Float32Array | None = None
     indices: UInt32Array | None = None
+    poses: Float32Array | None = None
     size_px: float = 1.0
+    gloss: float = 0.0
+    is_rim: bool = False
     is_on_top: bool = False
     T_layer_part: FloatArray = field(default_factory=lambda: np.eye(4))
     revision: int = 0
@@ -206,6 +214,8 @@ class Part:
         """Vertices (K, 3), so many that the others lie within them but for little; absent ones left out."""
         if self._outline is None or self._outline[0] != self.revision:
             placed = self.vertices_m[np.isfinite(self.vertices_m).all(axis=1)].astype(float)
+            if self.poses is not None:
+                placed = _around(self.poses[self.poses[:, 3:].any(axis=1), :3], placed)
             self._outline = self.revision, _thinned(placed)
         return self._outline[1]
 
@@ -214,11 +224,17 @@ class Part:
         """How many triangles it has."""
         if self.kind != "surface":
             return 0
-        return (len(self.vertices_m) if self.indices is None else self.indices.size) // 3
+        n_each = (len(self.vertices_m) if self.indices is None else self.indices.size) // 3
+        return n_each if self.poses is None else n_each * len(self.poses)
 
     def move_vertices(self, vertices_m: Float32Array) -> None:
         """Replace all vertices (N, 3) by as many others."""
         self.vertices_m = vertices_m
+        self.revision += 1
+
+    def move_instances(self, poses: Float32Array) -> None:
+        """Replace the poses (K, 7) of all instances."""
+        self.poses = poses
         self.revision += 1
 
 
@@ -247,6 +263,12 @@ class Layer:
         ]
         points: FloatArray = np.vstack([np.empty((0, 3)), *outlines])
         return points
+
+
+def _around(places_m: Float32Array, body_m: FloatArray) -> FloatArray:
+    """Lower and upper corners (2 N, 3) of cubes that hold a body (V, 3), however turned, at each place."""
+    reach_m = float(np.linalg.norm(body_m, axis=1).max(initial=0.0))
+    return np.vstack([places_m - reach_m, places_m + reach_m]).astype(float)
 
 
 def _thinned(points_m: FloatArray) -> FloatArray:

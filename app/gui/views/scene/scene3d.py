@@ -11,10 +11,10 @@ from PySide6.QtGui import QImage, QPalette, QResizeEvent
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.canvas import make_canvas
 from app.gui.views.scene.layers import (
     Arm,
-    Candies,
     CropBox,
     Frustum,
     arrow_layer,
@@ -27,7 +27,7 @@ from app.gui.views.scene.layers import (
 from app.gui.views.scene.navigation import Navigator
 from app.gui.views.scene.overlay import ScaleLegend, ViewButtons
 from app.gui.views.scene.parts import ColorScale, Layer, PreparedMesh, prepare_mesh
-from app.gui.views.scene.shapes import box_mesh
+from app.gui.views.scene.shapes import Shape, box_mesh
 from core.geometry import BoolArray, FloatArray
 from core.motion.arm_models import ArmModel, Capsule
 
@@ -158,22 +158,25 @@ class Scene3D(QWidget):
         """Show camera views; `picked` has the index of the one that is clicked."""
         self._put(name, frusta_layer(frusta))
 
-    def set_candies(self, name: str, n: int, radius_m: float, kept: BoolArray | None = None) -> None:
-        """Add candies; they appear once `set_candy_positions` has placed them.
+    def set_candies(self, name: str, n: int, shape: Shape, kept: BoolArray | None = None) -> None:
+        """Add candies; they appear once `set_candy_poses` has placed them.
 
         Args:
             name: of the layer.
             n: how many.
-            radius_m: of each.
-            kept: (n,) which ones stayed; lost ones differ in shape and colour. None: all look alike.
+            shape: of each, about its centre.
+            kept: (n,) which ones stayed; lost ones are grey with a coloured rim. None: all look alike.
         """
-        candies = Candies(n, radius_m, kept)
+        candies = Candies(n, shape, kept)
         self._put(name, candies.layer)
         self._candies[name] = candies
 
-    def set_candy_positions(self, name: str, positions_m: npt.ArrayLike) -> None:
-        """Place the candies at positions (n, 3), NaN to hide one; cheap."""
-        self._candies[name].move(positions_m)
+    def set_candy_poses(self, name: str, positions_m: npt.ArrayLike, quaternions: npt.ArrayLike) -> None:
+        """Place the candies at positions (n, 3), NaN to hide one, turned by quaternions (n, 4); cheap.
+
+        Quaternions are (x, y, z, w), as in recordings, and need not be of length one.
+        """
+        self._candies[name].move(positions_m, quaternions)
         self._canvas.update()
 
     def set_box(

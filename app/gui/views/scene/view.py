@@ -14,9 +14,11 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme import Theme
 from app.gui.views.scene.camera import Camera, Size
-from app.gui.views.scene.items import DrawnLayer, SmoothBuffer, SurfaceProgram
+from app.gui.views.scene.items import DrawnLayer
 from app.gui.views.scene.overlay import paint_labels
 from app.gui.views.scene.parts import Layer
+from app.gui.views.scene.programs import SurfaceProgram
+from app.gui.views.scene.smooth import SmoothBuffer
 from core.geometry import FloatArray
 
 _STILL_MS = 300

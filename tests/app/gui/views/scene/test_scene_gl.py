@@ -12,12 +12,22 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QMainWindow, QStackedWidget
 
 from app.gui.theme import DARK, LIGHT, palette_of
-from app.gui.views.scene import ColorScale, Frustum, Scene3D, box_mesh, cylinder_mesh, prepare_mesh
+from app.gui.views.scene import (
+    ColorScale,
+    Frustum,
+    Scene3D,
+    box_mesh,
+    cylinder_mesh,
+    prepare_mesh,
+    revolved_mesh,
+)
+from app.gui.views.scene.candies import CANDY_COLORS, LOST_COLOR
 from core.geometry import look_at
 from core.motion.arm_models import UR5
 from tests.benchmarks.scene_speed import frame_seconds, mug, replay_scene
 
 pytestmark = pytest.mark.gl
+CANDY = revolved_mesh([(0.0, 0.01), (0.02, 0.004), (0.02, -0.004), (0.0, -0.01)])
 CUBE = box_mesh((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
 GAP = 60
 """How far colours (0 to 255) may be from the theme's: they are shaded."""
@@ -134,14 +144,26 @@ def test_see_through_layers_are_drawn_from_far_to_near(scene):
 
 
 def test_kept_and_lost_candies_are_seen_and_absent_ones_are_not(scene):
-    scene.set_candies("candies", 3, 0.02, np.array([True, False, True]))
-    scene.set_candy_positions("candies", [(-0.05, 0, 0), (0.05, 0, 0), (0, np.nan, 0)])
+    turns = [(0, 0, 0, 1)] * 3
+    scene.set_candies("candies", 3, CANDY, np.array([True, False, True]))
+    scene.set_candy_poses("candies", [(-0.05, 0, 0), (0.05, 0, 0), (0, np.nan, 0)], turns)
     scene.fit()
     picture = pixels(scene.grab_image())
-    kept, lost = n_like(picture, rgb(LIGHT, "kept")), n_like(picture, rgb(LIGHT, "lost"))
-    assert kept > 2000 and lost > 2000
-    scene.set_candy_positions("candies", [(-0.05, 0, 0), (np.nan, 0, 0), (0, np.nan, 0)])
-    assert n_like(pixels(scene.grab_image()), rgb(LIGHT, "lost")) < 20
+    rim, grey = n_like(picture, rgb(LIGHT, "lost"), 30), n_like(picture, QColor(LOST_COLOR).getRgb()[:3], 30)
+    colours = [n_like(picture[:, :200], QColor(color).getRgb()[:3], 45) for color in CANDY_COLORS]
+    assert rim > 300 and grey > 1000 and max(colours) > 1000
+    scene.set_candy_poses("candies", [(-0.05, 0, 0), (np.nan, 0, 0), (0, np.nan, 0)], turns)
+    assert n_like(pixels(scene.grab_image()), rgb(LIGHT, "lost"), 30) < 20
+
+
+def test_a_candy_that_stands_on_its_edge_looks_narrow(scene):
+    scene.set_candies("candies", 1, CANDY)
+    shares = []
+    for turn in ((0, 0, 0, 1), (0.5**0.5, 0, 0, 0.5**0.5)):
+        scene.set_candy_poses("candies", [(0, 0, 0)], [turn])
+        scene.look_from("top")
+        shares.append((np.abs(pixels(scene.grab_image()) - rgb(LIGHT, "scene")).max(axis=-1) > 30).mean())
+    assert shares[1] < 0.75 * shares[0]
 
 
 def test_an_arm_moves_when_its_joints_do(scene):
