@@ -14,7 +14,7 @@ from PySide6.QtCore import QCoreApplication, QEventLoop, Qt
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QApplication
 
-from app.gui.views.scene import ColorScale, Scene3D, cylinder_mesh, revolved_mesh
+from app.gui.views.scene import ColorScale, Scene3D, prepare_mesh, revolved_mesh
 from app.gui.views.scene.shapes import Shape
 from core.geometry import FloatArray, make_pose
 from core.imagination.rendering.shapes import candy_mesh
@@ -51,8 +51,11 @@ def replay_scene(n_faces: int) -> Scene3D:
     scene = Scene3D()
     scale = ColorScale("Height", "mm", 0, 100)
     vertices, faces = mug(n_faces)
-    scene.set_mesh("object", vertices, faces, values=1000 * vertices[:, 2], scale=scale)
-    scene.set_mesh("platform", *cylinder_mesh(0.12, 0.02), T_world=make_pose(np.eye(3), (0, 0, -0.02)))
+    heights_mm = 1000 * vertices[:, 2]
+    scene.set_prepared_mesh(
+        "object", prepare_mesh(vertices, faces, values=heights_mm, scale=scale, is_shaded=True)
+    )
+    scene.set_ground("ground", (0, 0, 0), (0.4, 0.4), vertices)
     scene.set_arm("arm", UR5, _JOINTS_RAD)
     scene.set_pose("arm", make_pose(np.eye(3), (-0.55, 0, 0)))
     candy = candy_mesh(Parameters().particle)

@@ -9,8 +9,9 @@ from typing import Literal
 import numpy as np
 
 from app.gui.views.scene import PreparedMesh, prepare_mesh
+from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.shapes import Shape
-from core.geometry import BoolArray, FloatArray
+from core.geometry import FloatArray
 from core.imagination.capacity.result import Capacity
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Float32Array, Recording
@@ -26,8 +27,9 @@ from core.pipeline.session_view import SessionView
 PhaseKey = Literal["drop", "tilt_x", "tilt_y", "push"]
 N_PUSHES = 4
 _OUTLINE_DIRECTIONS = 180
-_NEAR = 0.6
-"""How far from the object, as a share of its size, a fallen candy still belongs to the picture."""
+_N_CASTERS = 15_000
+_MARGIN, _LEAST_SIZES, _MOST_SIZES = 1.8, 3.0, 9.0
+"""The ground reaches so far beyond what fell; at least, and at most, so many times half the object's size."""
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,8 @@ class ShownDrop:
         body: the surface that the physics knew.
         candy: what the physics took a candy for, about its centre.
         ground_m: height of the ground, on which the object stands.
-        ground_radius_m: wide enough for what fell near the object.
+        casters_m: (n, 3) points all over it, for its shadow.
+        ground_radius_m: wide enough for all that fell.
         outline_m: (n, 2) the object from above, its hull.
         indents_m: distances of the pivots from the footprint's centre; empty without pours.
     """
@@ -138,6 +141,7 @@ class ShownDrop:
     body: PreparedMesh
     candy: Shape
     ground_m: float
+    casters_m: FloatArray
     ground_radius_m: float
     outline_m: FloatArray
     indents_m: tuple[float, ...]
@@ -182,10 +186,11 @@ def load(key: DropKey) -> ShownDrop | None:
         moments=Moments(replay.recording),
         phases=phases_of(containability, settings),
         n_on_top=_n_on_top(containability),
-        body=prepare_mesh(surface.vertices_m, surface.faces),
+        body=prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True),
+        casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
         candy=(candy.vertices_m, candy.faces),
         ground_m=ground_m,
-        ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1], replay.retained),
+        ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1]),
         outline_m=_outline_m(surface),
         indents_m=() if view.pours is None else view.pours.indent_m,
     )
@@ -198,13 +203,13 @@ def _n_on_top(containability: Containability) -> int:
         return int((heights_m >= containability.aabb_m[1, 2]).sum())
 
 
-def _ground_radius_m(surface: TriangleMesh, ends_m: FloatArray, retained: BoolArray) -> float:
+def _ground_radius_m(surface: TriangleMesh, ends_m: Float32Array) -> float:
     """Around the object's middle."""
     middle_m = (surface.aabb_min_m + surface.aabb_max_m)[:2] / 2
     size_m = float(np.linalg.norm(surface.extents_m[:2])) / 2
-    fallen_m = np.linalg.norm(ends_m[~retained, :2] - middle_m, axis=1)
-    near_m = fallen_m[fallen_m < size_m * (1 + _NEAR)]  # NaN is not
-    return max(float(near_m.max(initial=0.0)), 1.2 * size_m)
+    away_m = np.linalg.norm(ends_m[:, :2] - middle_m, axis=1)
+    farthest_m = float(away_m[np.isfinite(away_m)].max(initial=0.0))
+    return min(max(_MARGIN * farthest_m, _LEAST_SIZES * size_m), _MOST_SIZES * size_m)
 
 
 def _outline_m(surface: TriangleMesh) -> FloatArray:

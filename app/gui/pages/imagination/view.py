@@ -14,12 +14,11 @@ from app.gui.pages.imagination.drop import PhaseKey, ShownDrop, push_of
 from app.gui.pages.layouts import lay_around
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.film_strip import FilmStrip, Picture
-from app.gui.views.scene import Scene3D, candy_legend, cylinder_mesh
+from app.gui.views.scene import Scene3D, candy_legend
 from app.gui.views.timeline import Section, Timeline
-from core.geometry import FloatArray, make_pose
+from core.geometry import FloatArray
 
 _SEE_THROUGH = 0.4
-_GROUND_THICK_M = 0.001
 _PICTURE_PX = 88
 _SHEET = "pours.png"
 _DROP_FILM, _POUR_FILM = "drop.mp4", "pour.mp4"
@@ -84,16 +83,16 @@ class DropReplay(QWidget):
             self.timeline.set_sections(drop.moments.duration_s, sections)
             self.timeline.set_time(drop.moments.duration_s)
             if is_first:
-                self.scene.fit("object", "ground", "start")
+                self.scene.fit("object", "candies", "start")
         self._show_legend()
 
     def _fill(self, drop: ShownDrop) -> None:
         found = drop.containability
         self._show_body()
         middle = found.aabb_m.mean(axis=0)
-        under_m = [middle[0], middle[1], drop.ground_m - _GROUND_THICK_M]
-        disc = cylinder_mesh(drop.ground_radius_m, _GROUND_THICK_M)
-        self.scene.set_mesh("ground", *disc, color="line", T_world=make_pose(np.eye(3), under_m))
+        self.scene.set_ground(
+            "ground", [*middle[:2], drop.ground_m], [drop.ground_radius_m] * 2, drop.casters_m
+        )
         self.scene.set_line("start", _rectangle_m(found.drop_positions_m), color="muted", width_px=1)
         self.scene.set_candies("candies", found.n_drop, drop.candy, found.retained)
 

@@ -32,7 +32,8 @@ from core.imagination.results import PourGrid
 from core.session.operator_choice import withdraw_operator_choice
 
 _MAP_PX = 400
-BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND = (
+GROUND, BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND = (
+    "ground",
     "object",
     "cup",
     "candies",
@@ -43,6 +44,8 @@ BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND = (
     "around",
 )
 _ARROW_M = 0.07
+_GROUND_M = 0.4
+"""Half its side."""
 _SEE_THROUGH = 0.45
 """Of the object, so that the candies in it are seen."""
 
@@ -309,6 +312,9 @@ class PourScene(QWidget):
         self._pours, self._recording = pours, None
         self.scene.set_prepared_mesh(BODY, pours.body, opacity=1.0 if pours.grid is None else _SEE_THROUGH)
         grid, box = pours.grid, pours.containability.aabb_m
+        self.scene.set_ground(
+            GROUND, [*box.mean(axis=0)[:2], pours.ground_m], [_GROUND_M] * 2, pours.casters_m
+        )
         for name in (CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER):
             self.scene.remove(name)
         self._bar.setVisible(grid is not None)

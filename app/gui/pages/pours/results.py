@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
 from app.gui.views.scene.shapes import Shape
 from app.operations.choosing import current_motions
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
 
 
+_N_CASTERS = 15_000
+
+
 @dataclass(frozen=True)
 class ShownPours:
     """Everything about a session's pours.
@@ -49,6 +53,7 @@ class ShownPours:
         candy_extents_m: (3,) its edge lengths.
         ground_m: height of what the object stands on.
         body: the object.
+        casters_m: (n, 3) points all over it, for its shadow.
         cup: in its own frame.
         is_in_cell: false for an imported mesh, which no arm can reach.
         motions: which ones the cell's arm can make; none if that is not known.
@@ -70,6 +75,7 @@ class ShownPours:
     candy_extents_m: FloatArray
     ground_m: float
     body: PreparedMesh
+    casters_m: FloatArray
     cup: PreparedMesh
     is_in_cell: bool
     motions: PourMotions | None = None
@@ -180,7 +186,8 @@ def _imagined(view: SessionView, record: StageRecord, tries: StageRecord | None)
         candy=(candy.vertices_m, candy.faces),
         candy_extents_m=particle_extents_m(parameters.particle),
         ground_m=float(surface.aabb_min_m[2]),
-        body=prepare_mesh(surface.vertices_m, surface.faces),
+        body=prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True),
+        casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
         cup=prepare_mesh(cup.vertices_m, cup.faces),
         is_in_cell=view.source != "mesh",
     )

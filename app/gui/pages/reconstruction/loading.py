@@ -136,7 +136,7 @@ def _model(session: Session, key: ModelKey, is_mesh: bool) -> ShownModel:
     return ShownModel(
         digest=key.surface,
         mesh=mesh,
-        body=prepare_mesh(mesh.vertices_m, mesh.faces),
+        body=prepare_mesh(mesh.vertices_m, mesh.faces, is_shaded=True),
         centers_m=_centers_m(mesh),
         is_closed=topology(mesh).is_closed,
         reconstruction=reconstruction,

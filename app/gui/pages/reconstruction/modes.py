@@ -49,8 +49,8 @@ def mode_colors(
 ) -> tuple[FloatArray, ColorScale] | None:
     """Return a number (V,) for each vertex, NaN where there is none, and its colours; none if plain."""
     if mode == "height":
-        above_mm = (model.mesh.vertices_m[:, 2] - _ground_m(model)) * MM
-        top_mm = float(model.mesh.aabb_max_m[2] - _ground_m(model)) * MM
+        above_mm = (model.mesh.vertices_m[:, 2] - ground_m(model)) * MM
+        top_mm = float(model.mesh.aabb_max_m[2] - ground_m(model)) * MM
         return above_mm, ColorScale(translate("ModelModes", "Height"), "mm", 0.0, top_mm)
     if mode == "coverage" and model.quality is not None:
         n_views = model.quality.n_views.astype(float)
@@ -127,8 +127,8 @@ def _collision_caption(model: ShownModel) -> str:
     )
 
 
-def _ground_m(model: ShownModel) -> float:
-    """What heights are counted from: the platform, or the lowest point of an imported mesh."""
+def ground_m(model: ShownModel) -> float:
+    """Return what heights are counted from: the platform, or the lowest point of an imported mesh."""
     if model.reconstruction is None:
         return float(model.mesh.aabb_min_m[2])
     return model.reconstruction.platform_height_m

@@ -20,7 +20,7 @@ from typing_extensions import override
 from app.gui.pages.layouts import lay_around
 from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.reconstruction.loading import MM, ShownModel
-from app.gui.pages.reconstruction.modes import caption, mode_colors, mode_tips
+from app.gui.pages.reconstruction.modes import caption, ground_m, mode_colors, mode_tips
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.labels import text_label
 from app.gui.views.painting import tabular
@@ -34,6 +34,8 @@ _RULER_LAYERS = ("ruler_points", "ruler_line", "ruler_label")
 _UNSEEN = "attention"
 """Colour of what no view saw."""
 _FAINT = 0.35
+_GROUND_SIZES = 1.6
+"""Half the ground's side, as a share of the object's diagonal."""
 
 
 class ModelView(QWidget):
@@ -123,7 +125,7 @@ class ModelView(QWidget):
         is_first = self._model is None
         self._model, self._difference_m = model, difference_m
         self._offer_modes()
-        for layer in ("object", "hidden", "collision"):
+        for layer in ("object", "hidden", "collision", "ground"):
             self.scene.remove(layer)
         places = {} if model is None else {"object": model.centers_m}
         if model is not None and model.quality is not None:
@@ -135,6 +137,8 @@ class ModelView(QWidget):
         if model is None:
             self._ruler_button.setChecked(False)
         self._draw()
+        if model is not None:
+            self._draw_ground(model)
         if is_first:
             self.scene.fit("object")
 
@@ -196,6 +200,13 @@ class ModelView(QWidget):
         body = replace(model.body, values=values.astype(np.float32), scale=scale)
         self.scene.set_prepared_mesh("object", body, color=_UNSEEN)
         return scale
+
+    def _draw_ground(self, model: ShownModel) -> None:
+        """The platform under it; an imported mesh stands on its lowest point."""
+        low, high = model.mesh.aabb_min_m, model.mesh.aabb_max_m
+        height_m = min(ground_m(model), float(low[2]))
+        half_m = _GROUND_SIZES * float(np.linalg.norm(high - low))
+        self.scene.set_ground("ground", [*(low + high)[:2] / 2, height_m], [half_m] * 2, model.centers_m)
 
     def _draw_hidden(self, model: ShownModel, mode: str) -> None:
         """The inside of openings that no view saw."""

@@ -80,7 +80,7 @@ def load_object(folder: Path) -> PreparedMesh | None:
     if not path.is_file():
         return None
     mesh = read_ply(path)
-    return prepare_mesh(mesh.vertices_m, mesh.faces)
+    return prepare_mesh(mesh.vertices_m, mesh.faces, is_shaded=True)
 
 
 def load_session_pours(folder: Path) -> SessionPours:

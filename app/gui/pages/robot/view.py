@@ -18,7 +18,7 @@ from core.motion.kinematics import flange_pose
 
 AHEAD_S = 1.0
 """So far the ghost is ahead of the moving arm, in seconds of the plan."""
-_CUP_OPACITY, _GHOST_CUP_OPACITY, _PLATFORM_OPACITY = 0.55, 0.3, 0.6
+_CUP_OPACITY, _GHOST_CUP_OPACITY = 0.55, 0.3
 _GHOST_ARM = "planned arm"
 _MOST_OFTEN_S = 0.09
 _SAME_RAD = 5e-4
@@ -38,6 +38,7 @@ class ArmView(QWidget):
         super().__init__()
         self.setObjectName("arm_view")
         self._cell: RobotCell | None = None
+        self._object: PreparedMesh | None = None
         self._motion: ShownMotion | None = None
         self._joints_rad: FloatArray | None = None
         self._holds_cup: bool | None = False
@@ -79,7 +80,8 @@ class ArmView(QWidget):
         """Show another cell, with its arm at home until something else is known."""
         self._cell = cell
         scene = self.scene
-        cell.model.draw_furniture(scene, "line", "raised", _PLATFORM_OPACITY)
+        cell.model.draw_furniture(scene)
+        self._draw_platform_top()
         scene.set_label("station", cell.station_m, self.tr("cup station"))
         scene.set_points("corners", cell.corners_m, color="scene", size_px=1)  # unseen; kept in view
         scene.set_prepared_mesh("cup", cell.cup, color="kept", opacity=_CUP_OPACITY)
@@ -93,10 +95,17 @@ class ArmView(QWidget):
 
     def show_object(self, mesh: PreparedMesh | None) -> None:
         """Show another object; none: none."""
+        self._object = mesh
         if mesh is None:
             self.scene.remove("object")
         else:
             self.scene.set_prepared_mesh("object", mesh)
+        self._draw_platform_top()
+
+    def _draw_platform_top(self) -> None:
+        if self._cell is not None:
+            casters_m = np.empty((0, 3)) if self._object is None else self._object.vertices_m
+            self._cell.model.draw_platform_top(self.scene, casters_m)
 
     def show_arm(self, joints_rad: FloatArray | None, holds_cup: bool | None) -> None:
         """Show where the arm is now.

@@ -30,6 +30,7 @@ class Candies:
 
     Attributes:
         layer: to be drawn.
+        radius_m: half of a candy's largest extent.
     """
 
     def __init__(self, n: int, shape: Shape, kept: BoolArray | None) -> None:
@@ -37,6 +38,7 @@ class Candies:
         is_kept = np.ones(n, dtype=bool) if kept is None else np.asarray(kept, dtype=bool)
         body = prepare_mesh(*shape)
         radius_m = float(np.linalg.norm(body.vertices_m, axis=1).max())
+        self.radius_m = radius_m
         self._lost = np.flatnonzero(~is_kept)
         self._target = BallTarget(np.full((n, 3), np.nan), radius_m)
         which = np.random.default_rng(_SEED).integers(0, len(CANDY_COLORS), n)

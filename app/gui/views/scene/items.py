@@ -10,13 +10,15 @@ from pyqtgraph.opengl import GLLinePlotItem, GLScatterPlotItem
 from pyqtgraph.opengl.GLGraphicsItem import GLGraphicsItem
 
 from app.gui.theme import Theme
+from app.gui.views.scene.ground import GroundPart
+from app.gui.views.scene.ground_item import GroundItem
 from app.gui.views.scene.parts import Layer, Part
 from app.gui.views.scene.states import LINES, ON_TOP
 from app.gui.views.scene.surfaces import DepthItem, SurfaceItem
 from core.geometry import AnyArray, FloatArray
 
-_RANK_OPAQUE, _RANK_LINES, _RANK_SEE_THROUGH, _RANK_ON_TOP = 0.0, 1.0, 2.0, 1e6
-"""The order of drawing."""
+_RANK_OPAQUE, _RANK_GROUND, _RANK_LINES, _RANK_SEE_THROUGH, _RANK_ON_TOP = 0.0, 0.5, 1.0, 2.0, 1e6
+"""The order of drawing; much of the ground is hidden, and then not drawn."""
 
 
 class LineItem(GLLinePlotItem):  # type: ignore[misc]  # pyqtgraph has no types
@@ -59,11 +61,13 @@ class PointItem(GLScatterPlotItem):  # type: ignore[misc]  # pyqtgraph has no ty
         self.setData(color=colors if colors.ndim == 2 else tuple(colors.tolist()))
 
 
-PartItem: TypeAlias = SurfaceItem | LineItem | PointItem
+PartItem: TypeAlias = SurfaceItem | GroundItem | LineItem | PointItem
 
 
 def item_of(part: Part, pixel_ratio: float) -> PartItem:
     """Return the item that draws a part, on a screen with so many pixels for one of Qt's."""
+    if isinstance(part, GroundPart):
+        return GroundItem(part)
     if part.kind == "surface":
         return SurfaceItem(part)
     return LineItem(part, pixel_ratio) if part.kind == "lines" else PointItem(part, pixel_ratio)
@@ -111,7 +115,7 @@ class DrawnLayer:
 
     def take_rank(self, rank: int) -> None:
         """Be drawn after see-through layers of lower rank; opaque ones come first anyway."""
-        order = {"lines": _RANK_LINES, "points": _RANK_LINES}
+        order = {"ground": _RANK_GROUND, "lines": _RANK_LINES, "points": _RANK_LINES}
         surface = _RANK_SEE_THROUGH + rank + 0.5 if self.is_see_through else _RANK_OPAQUE
         for item, part in zip(self._items, self.layer.parts, strict=True):
             item.setDepthValue(_RANK_ON_TOP if part.is_on_top else order.get(part.kind, surface))

@@ -49,13 +49,68 @@ void main() {
     const vec3 lamp = vec3(-0.33, 0.41, 0.85);
     float from_lamp = max(dot(normal, lamp), 0.0);
     float from_sky = 0.5 + 0.5 * dot(normal, u_up);
-    float light = mix(1.0, 0.34 + 0.46 * from_lamp + 0.24 * from_sky, u_lit);
+    float light = mix(1.0, 0.34 + 0.52 * from_lamp + 0.22 * from_sky, u_lit);
     float glare = 0.0;
     if (u_gloss > 0.0)
         glare = u_gloss * pow(max(dot(normal, normalize(lamp - normalize(v_eye))), 0.0), 60.0);
     gl_FragColor = vec4(v_color.rgb * light + glare, v_color.a);
 }
 """
+_GROUND_VERTEX = """
+#version 120
+attribute vec3 a_position;
+uniform mat4 u_eye;
+uniform mat4 u_projection;
+uniform vec3 u_middle;
+varying vec2 v_place;
+void main() {
+    v_place = a_position.xy - u_middle.xy;
+    gl_Position = u_projection * u_eye * vec4(a_position, 1.0);
+}
+"""
+_GROUND_FRAGMENT = """
+#version 120
+uniform vec3 u_plane;
+uniform vec3 u_line;
+uniform vec3 u_background;
+uniform vec2 u_half;
+uniform vec3 u_middle;
+uniform float u_grid;
+uniform float u_fades;
+uniform sampler2D u_shadow;
+varying vec2 v_place;
+float lines(vec2 place, float width) {
+    // A line a pixel wide at each whole number; none where they would lie closer than some pixels.
+    vec2 pixel = fwidth(place);
+    vec2 away = abs(fract(place - 0.5) - 0.5) / pixel;
+    float crowded = max(pixel.x, pixel.y);
+    return clamp(width - min(away.x, away.y), 0.0, 1.0) * (1.0 - smoothstep(0.08, 0.3, crowded));
+}
+void main() {
+    vec2 share = v_place / u_half;
+    float there = u_fades > 0.5 ? 1.0 - smoothstep(0.5, 1.0, length(share)) : 1.0;
+    if (there <= 0.0) discard;
+    float line = 0.0;
+    if (u_grid > 0.0) {
+        vec2 place = (v_place + u_middle.xy) / u_grid;
+        line = max(0.45 * lines(place, 0.8), 0.9 * lines(place / 5.0, 1.0));
+    }
+    float light = 1.0 - texture2D(u_shadow, 0.5 + 0.5 * share).r;
+    gl_FragColor = vec4(mix(u_background, mix(u_plane, u_line, line) * light, there), 1.0);
+}
+"""
+_GROUND_UNIFORMS = (
+    "eye",
+    "projection",
+    "plane",
+    "line",
+    "background",
+    "half",
+    "middle",
+    "grid",
+    "fades",
+    "shadow",
+)
 POSITION, NORMAL, COLOR, PLACE, TURN = range(5)
 _ATTRIBUTES = {
     POSITION: "a_position",
@@ -80,6 +135,19 @@ class SurfaceProgram:
         self.up = GL.glGetUniformLocation(self.id, "u_up")
         self.gloss = GL.glGetUniformLocation(self.id, "u_gloss")
         self.lit = GL.glGetUniformLocation(self.id, "u_lit")
+
+
+class GroundProgram:
+    """A plane with a grid and a map of shadows.
+
+    Attributes:
+        id: OpenGL's name of it.
+        at: the locations of its uniforms.
+    """
+
+    def __init__(self) -> None:
+        self.id = linked(_GROUND_VERTEX, _GROUND_FRAGMENT, {POSITION: "a_position"})
+        self.at = {name: GL.glGetUniformLocation(self.id, f"u_{name}") for name in _GROUND_UNIFORMS}
 
 
 def linked(vertex: str, fragment: str, attributes: dict[int, str]) -> int:

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QLabel, QWidget
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.canvas import make_canvas
+from app.gui.views.scene.ground import Ground
 from app.gui.views.scene.layers import (
     Arm,
     CropBox,
@@ -58,6 +59,7 @@ class Scene3D(QWidget):
         self._arms: dict[str, Arm] = {}
         self._candies: dict[str, Candies] = {}
         self._boxes: dict[str, CropBox] = {}
+        self._grounds: dict[str, Ground] = {}
         self._canvas = make_canvas(theme_of(self), self)
         self._navigator = Navigator(self._canvas, self._layers, self._boxes)
         self._navigator.picked.connect(self.picked)
@@ -176,8 +178,38 @@ class Scene3D(QWidget):
 
         Quaternions are (x, y, z, w), as in recordings, and need not be of length one.
         """
-        self._candies[name].move(positions_m, quaternions)
+        candies = self._candies[name]
+        candies.move(positions_m, quaternions)
+        for ground in self._grounds.values():
+            ground.shade_candies(np.asarray(positions_m), candies.radius_m)
         self._canvas.update()
+
+    def set_ground(
+        self,
+        name: str,
+        center_m: npt.ArrayLike,
+        half_m: npt.ArrayLike,
+        casters_m: npt.ArrayLike,
+        *,
+        grid_m: float = 0.01,
+        fades: bool = True,
+        color: str | None = None,
+    ) -> None:
+        """Show a plane with a grid, from above only; it is no part of what `fit` brings into view.
+
+        Args:
+            name: of the layer.
+            center_m: (3,) a point on it, its middle.
+            half_m: (2,) half its sides along x and y.
+            casters_m: (N, 3) points of what stands on it, for its soft shadow; dense enough to fill it.
+            grid_m: between the lines; 0: none.
+            fades: whether it fades towards its rim, or ends there.
+            color: a field of `Theme`; `ground` if None.
+        """
+        casters = np.asarray(casters_m, dtype=float).reshape(-1, 3)
+        ground = Ground(center_m, half_m, casters, grid_m=grid_m, fades=fades, color=color or "ground")
+        self._put(name, ground.layer)
+        self._grounds[name] = ground
 
     def set_box(
         self, name: str, min_m: npt.ArrayLike, max_m: npt.ArrayLike, *, has_handles: bool = False
@@ -216,7 +248,7 @@ class Scene3D(QWidget):
 
     def remove(self, name: str) -> None:
         """Take a layer away; nothing happens if there is none of that name."""
-        for things in (self._layers, self._arms, self._candies, self._boxes):
+        for things in (self._layers, self._arms, self._candies, self._boxes, self._grounds):
             things.pop(name, None)
         self._canvas.drop(name)
         self._show_hint()
@@ -286,7 +318,7 @@ class Scene3D(QWidget):
         former = self._layers.get(name)
         if former is not None:
             layer.T_world_layer, layer.is_visible = former.T_world_layer, former.is_visible
-        for things in (self._arms, self._candies, self._boxes):
+        for things in (self._arms, self._candies, self._boxes, self._grounds):
             things.pop(name, None)
         self._layers[name] = layer
         self._canvas.put(name, layer)
@@ -328,6 +360,9 @@ def warm_up(parent: QWidget) -> Iterator[None]:
     yield
     scene.set_mesh("mesh", *box_mesh(*corners))
     scene.set_label("label", corners[0], "0")
+    scene.grab_image()
+    yield
+    scene.set_ground("ground", corners[0], (1.0, 1.0), corners)
     scene.grab_image()
     yield
     scene.deleteLater()

@@ -21,7 +21,9 @@ from app.gui.views.scene import (
     prepare_mesh,
     revolved_mesh,
 )
+from app.gui.views.scene.camera import Camera
 from app.gui.views.scene.candies import CANDY_COLORS, LOST_COLOR
+from app.gui.views.scene.occlusion import surface_points_m
 from core.geometry import look_at
 from core.motion.arm_models import UR5
 from tests.benchmarks.scene_speed import frame_seconds, mug, replay_scene
@@ -164,6 +166,38 @@ def test_a_candy_that_stands_on_its_edge_looks_narrow(scene):
         scene.look_from("top")
         shares.append((np.abs(pixels(scene.grab_image()) - rgb(LIGHT, "scene")).max(axis=-1) > 30).mean())
     assert shares[1] < 0.75 * shares[0]
+
+
+def test_the_ground_is_opaque_from_above_has_shadows_and_is_not_in_the_way_from_below(scene):
+    scene.set_ground("ground", (0, 0, -0.1), (0.5, 0.5), surface_points_m(*CUBE, 20_000), grid_m=0.0)
+    scene.set_points("corners", [(-0.3, -0.3, 0), (0.3, 0.3, 0)], size_px=1)
+    scene.fit("corners")
+    scene.look_from("top")
+    picture = pixels(scene.grab_image())
+    assert np.abs(picture[150, 300] - rgb(LIGHT, "ground")).max() < 12
+    assert picture[150, 200].max() < rgb(LIGHT, "ground").min() - 40
+    scene.set_mesh("cube", *CUBE, color="lost")
+    scene.findChild(QOpenGLWidget).set_camera(Camera((0, 0, 0), 1.5, -90, -89))
+    assert np.abs(middle(scene) - rgb(LIGHT, "lost")).max() < GAP
+
+
+def test_the_ground_has_lines(scene):
+    scene.set_ground("ground", (0, 0, 0), (0.5, 0.5), np.empty((0, 3)), grid_m=0.1, fades=False)
+    scene.set_points("corners", [(-0.3, -0.3, 0), (0.3, 0.3, 0)], size_px=1)
+    scene.fit("corners")
+    scene.look_from("top")
+    row = pixels(scene.grab_image())[100, 60:340].max(axis=-1)
+    assert 4 <= (np.diff((row < row.max() - 3).astype(int)) == 1).sum() <= 8
+
+
+def test_words_are_legible_over_a_ground(scene):
+    """Its texture leaves the painter of the labels as it was."""
+    scene.set_mesh("cube", *CUBE, color="kept")
+    scene.set_label("label", (0, 0, 0.1), "WWWWWWWW")
+    scene.fit("cube")
+    before = pixels(scene.grab_image())
+    scene.set_ground("ground", (0, 0, -5), (0.01, 0.01), np.empty((0, 3)))
+    assert (np.abs(pixels(scene.grab_image()) - before).max(axis=-1) > 20).sum() < 20
 
 
 def test_an_arm_moves_when_its_joints_do(scene):
