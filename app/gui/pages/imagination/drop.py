@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from app.gui.pages.photographed import in_colors
 from app.gui.views.scene import PreparedMesh, prepare_mesh
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.shapes import Shape
@@ -186,7 +187,7 @@ def load(key: DropKey) -> ShownDrop | None:
         moments=Moments(replay.recording),
         phases=phases_of(containability, settings),
         n_on_top=_n_on_top(containability),
-        body=prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True),
+        body=in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view),
         casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
         candy=(candy.vertices_m, candy.faces),
         ground_m=ground_m,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from app.gui.pages.photographed import in_colors
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
 from app.gui.views.scene.shapes import Shape
@@ -186,7 +187,7 @@ def _imagined(view: SessionView, record: StageRecord, tries: StageRecord | None)
         candy=(candy.vertices_m, candy.faces),
         candy_extents_m=particle_extents_m(parameters.particle),
         ground_m=float(surface.aabb_min_m[2]),
-        body=prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True),
+        body=in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view),
         casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
         cup=prepare_mesh(cup.vertices_m, cup.faces),
         is_in_cell=view.source != "mesh",

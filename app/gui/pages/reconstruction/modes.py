@@ -16,6 +16,8 @@ if TYPE_CHECKING:  # it brings the fusion along
 
 translate = QCoreApplication.translate
 
+PHOTO = "photo"
+"""The mode that shows the surface as the camera saw it."""
 LEAST_SCALE_MM = 0.5
 """Of a difference; less is noise and should not look like much."""
 _SHOWN_SHARE = 98.0
@@ -37,7 +39,13 @@ def mode_tips(model: ShownModel | None, has_difference: bool) -> dict[str, tuple
     difference = translate("ModelModes", "Change a parameter and reconstruct to compare the results here")
     if has_difference:
         difference = translate("ModelModes", "How far the surface moved since the last result")
+    photo = translate("ModelModes", "The surface in the colours of the scan's images")
+    if model is not None and model.reconstruction is None:
+        photo = translate("ModelModes", "An imported mesh has no images")
+    elif model is not None and model.body.rgb is None:
+        photo = translate("ModelModes", "The model was made without colours; reconstruct")
     return {
+        PHOTO: (model is not None and model.body.rgb is not None, photo),
         "coverage": (has_views, coverage),
         "collision": (has_parts, collision),
         "difference": (has_difference, difference),

@@ -51,7 +51,9 @@ _FRUSTUM_BAR = np.array([[1, 3]])
 
 def mesh_layer(mesh: PreparedMesh, color: str, opacity: float) -> Layer:
     """A mesh as a surface, or as a wire frame."""
-    paint = Paint((color,), values=mesh.values, scale=mesh.scale, opacity=opacity, light=mesh.light)
+    paint = Paint(
+        (color,), values=mesh.values, scale=mesh.scale, opacity=opacity, light=mesh.light, rgb=mesh.rgb
+    )
     if mesh.edges is None:
         part = Part("surface", mesh.vertices_m, paint, mesh.normals, mesh.faces.ravel())
     else:

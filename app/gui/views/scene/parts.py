@@ -75,6 +75,7 @@ class PreparedMesh:
         values: (N,) the quantity that is coloured; NaN where it is unknown.
         scale: the colours of the values.
         light: (N,) share of the light from around that reaches each vertex; None: all of it.
+        rgb: (N, 3) colour of each vertex, 0 to 1, instead of the one it is drawn in; None: it has none.
     """
 
     vertices_m: Float32Array
@@ -84,6 +85,7 @@ class PreparedMesh:
     values: Float32Array | None = None
     scale: ColorScale | None = None
     light: Float32Array | None = None
+    rgb: Float32Array | None = None
 
 
 def prepare_mesh(
@@ -161,6 +163,7 @@ class Paint:
         scale: of the values.
         opacity: 0 to 1.
         light: (N,) share of the colour that is seen; None: all of it.
+        rgb: (N, 3) what the vertices have for their own, 0 to 1; values come before it.
     """
 
     names: tuple[str, ...]
@@ -169,6 +172,7 @@ class Paint:
     scale: ColorScale | None = None
     opacity: float = 1.0
     light: Float32Array | None = None
+    rgb: Float32Array | None = None
 
     def colors(self, theme: Theme) -> ColorArray:
         """Colours, (4,) of all vertices or (N, 4) of each."""
@@ -176,6 +180,8 @@ class Paint:
         if self.values is not None and self.scale is not None:
             by_value = self.scale.colors(self.values)
             colors = np.where(by_value[:, 3:] > 0, by_value, palette[0])
+        elif self.rgb is not None:
+            colors = np.column_stack([self.rgb, np.ones(len(self.rgb), dtype=np.float32)])
         else:
             colors = palette[0] if self.which is None else palette[self.which]
         if self.light is not None:
