@@ -68,8 +68,8 @@ def test_views_of_other_exposure_leave_no_seams(ball):
 def test_what_no_view_saw_is_coloured_as_its_surroundings_are(ball):
     rgb = photographed(ball, scan(view(0.0))).model.rgb / 255
     unseen = ball.vertices_m[:, 0] < -0.03
-    assert np.abs(rgb[unseen, 1] - BLUE[1]).max() < 0.05  # between red and blue, neither black nor white
-    assert rgb[unseen][:, [0, 2]].sum(axis=1) == pytest.approx(np.ones(unseen.sum()), abs=0.1)
+    assert np.abs(rgb[unseen, 1] - BLUE[1]).max() < 0.12  # between red and blue, neither black nor white
+    assert rgb[unseen][:, [0, 2]].sum(axis=1) == pytest.approx(np.ones(unseen.sum()), abs=0.2)
 
 
 def test_what_something_hides_does_not_take_its_colour(ball):

@@ -23,16 +23,9 @@ from app.gui.views.scene.shapes import (
     Shape,
     arrow_mesh,
     box_edges,
-    capsule_mesh,
-    merged,
 )
 from core.geometry import FloatArray, transform_points
-from core.motion.arm_models import FLANGE_LINK, ArmModel, Capsule, arm_shape
-from core.motion.kinematics import link_poses
 
-_GHOST_OPACITY = 0.38
-_GHOST_THICKER_M = 0.0015
-"""Where both arms are at one place the ghost lies around the other, instead of flickering in it."""
 _HANDLE_PX = 11
 _HANDLE_REACH_PX = 11
 _THINNEST_M = 0.005
@@ -93,35 +86,6 @@ def _points(points_m: npt.ArrayLike) -> Float32Array:
 def _surface_part(shape: Shape, paint: Paint) -> Part:
     mesh = prepare_mesh(*shape)
     return Part("surface", mesh.vertices_m, paint, mesh.normals, mesh.faces.ravel())
-
-
-class Arm:
-    """A layer that shows an arm with its tools; a ghost is see-through and of another colour.
-
-    Attributes:
-        layer: to be drawn.
-    """
-
-    def __init__(self, model: ArmModel, tools: Sequence[Capsule], is_ghost: bool) -> None:
-        self._model = model
-        capsules = arm_shape(model, tools).capsules
-        paint = Paint(("ghost",), opacity=_GHOST_OPACITY) if is_ghost else Paint(("arm",))
-        self._links = [link for link in range(FLANGE_LINK + 1) if any(c.link == link for c in capsules)]
-        thicker_m = _GHOST_THICKER_M if is_ghost else 0.0
-        parts = [_link([c for c in capsules if c.link == link], thicker_m, paint) for link in self._links]
-        self.layer = Layer(tuple(parts))
-
-    def move(self, joints_rad: npt.ArrayLike) -> None:
-        """Bend the arm to joint angles (6,)."""
-        poses = link_poses(self._model, np.asarray(joints_rad, dtype=float))
-        for link, part in zip(self._links, self.layer.parts, strict=True):
-            part.T_layer_part = poses[link]
-
-
-def _link(capsules: Sequence[Capsule], thicker_m: float, paint: Paint) -> Part:
-    """All capsules of one link as one surface, thicker than they are."""
-    shapes = [capsule_mesh(c.start_m, c.end_m, c.radius_m + thicker_m) for c in capsules]
-    return _surface_part(merged(shapes), paint)
 
 
 class CropBox:

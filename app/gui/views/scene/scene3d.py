@@ -11,11 +11,11 @@ from PySide6.QtGui import QImage, QPalette, QResizeEvent
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.scene.arm import Arm, ArmLooks
 from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.canvas import make_canvas
 from app.gui.views.scene.ground import Ground
 from app.gui.views.scene.layers import (
-    Arm,
     CropBox,
     Frustum,
     arrow_layer,
@@ -135,18 +135,19 @@ class Scene3D(QWidget):
         joints_rad: npt.ArrayLike,
         *,
         tools: Sequence[Capsule] = (),
-        is_ghost: bool = False,
+        looks: ArmLooks = "solid",
     ) -> None:
-        """Show an arm with its tools; a ghost is see-through.
+        """Show an arm with its tools.
 
         Args:
             name: of the layer.
             model: which arm.
             joints_rad: (6,).
             tools: capsules on the flange.
-            is_ghost: whether it shows where the arm will be, not where it is.
+            looks: `solid` as it is, `ghost` see-through where it will be or is taken to be, `collision` the
+                shape that is kept clear of things.
         """
-        arm = Arm(model, tools, is_ghost)
+        arm = Arm(model, tools, looks)
         arm.move(joints_rad)
         self._put(name, arm.layer)
         self._arms[name] = arm

@@ -82,6 +82,21 @@ def capsule_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike, radius_m: float, 
     return vertices @ _axes_along(end - start).T + start, faces
 
 
+def rounded_cylinder(
+    start_m: npt.ArrayLike, end_m: npt.ArrayLike, radius_m: float, bevel_m: float, sides: int = 32
+) -> Shape:
+    """A closed cylinder between two points whose edges are rounded by a bevel, at most half its length."""
+    start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
+    length = float(np.linalg.norm(end - start))
+    bevel = min(bevel_m, length / 2, radius_m)
+    angle = np.linspace(0, np.pi / 2, 4)
+    edge = [(radius_m - bevel * (1 - float(np.sin(a))), bevel * (1 - float(np.cos(a)))) for a in angle]
+    top = [(r, length - h) for r, h in edge]
+    profile = [(0.0, length), top[0], *top, *reversed(edge), edge[0], (0.0, 0.0)]
+    vertices, faces = revolved_mesh(profile, sides)
+    return vertices @ _axes_along(end - start).T + start, faces
+
+
 def arrow_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike) -> Shape:
     """An arrow as thick as suits its length."""
     start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)

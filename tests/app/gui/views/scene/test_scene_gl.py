@@ -245,7 +245,7 @@ def test_a_picture_has_smooth_edges(scene):
 
 def test_a_still_view_is_not_painted_again(qtbot, scene):
     scene.set_mesh("cube", *CUBE)
-    scene.set_arm("ghost", UR5, np.zeros(6), is_ghost=True)
+    scene.set_arm("ghost", UR5, np.zeros(6), looks="ghost")
     qtbot.wait(1000)
     frames = []
     scene.findChild(QOpenGLWidget).frameSwapped.connect(lambda: frames.append(1))
