@@ -76,6 +76,7 @@ STAGES: tuple[Stage, ...] = (
         ("reconstruction.crop_min_m", "reconstruction.crop_max_m"),
         of_scan=True,
     ),
+    Stage("colors", (SCAN, "reconstruction"), (), of_scan=True),
     Stage("collision", (SURFACE,), ("collision", "-collision.aabb_margin_m")),
     Stage(
         "containability",

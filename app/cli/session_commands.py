@@ -64,6 +64,7 @@ def scan(
     with working(session, choices, workers, terminal=terminal) as pipeline:
         scan_object(pipeline, settings, source, request, operator=operator)
         quality = pipeline.quality()
+        pipeline.colors()
     print(f"{len(quality.views)} views in {session}.")
     for reason in quality.reasons:
         print(f"Verdict on the scan: {reason}")
@@ -73,6 +74,7 @@ def reconstruct(session: Path, choices: Choices, workers: int | None) -> None:
     """Reconstruct a session's scan."""
     with working(session, choices, workers, is_existing=True) as pipeline:
         result = pipeline.reconstruction()
+        pipeline.colors()
     width, depth, height = (MM * result.mesh.extents_m).round()
     print(
         f"Reconstructed {width:.0f} x {depth:.0f} x {height:.0f} mm, {len(result.mesh.faces)} faces: "

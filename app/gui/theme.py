@@ -38,6 +38,8 @@ class Theme:
         kept: candies that stayed.
         lost: candies that did not.
         scene: background of 3D views.
+        ground: of the plane that things stand on in 3D.
+        grid: of the lines on it.
         body: of the object in 3D.
         arm: of the arm in 3D.
         ghost: of the planned arm in 3D.
@@ -60,13 +62,15 @@ class Theme:
     kept: str
     lost: str
     scene: str
+    ground: str
+    grid: str
     body: str
     arm: str
     ghost: str
 
     def color(self, name: str) -> QColor:
-        """Return a named colour for painting."""
-        return QColor(getattr(self, name))
+        """Return a named colour for painting, or the one that is `#rrggbb` in every theme."""
+        return QColor(name if name.startswith("#") else getattr(self, name))
 
     @property
     def is_dark(self) -> bool:
@@ -91,7 +95,9 @@ LIGHT = Theme(
     stop="#d0021b",
     kept="#1f6fd0",
     lost="#d98a00",
-    scene="#e9ebef",
+    scene="#e3e6eb",
+    ground="#f4f4f2",
+    grid="#c9cdd4",
     body="#b9bfc9",
     arm="#8d97a6",
     ghost="#0b8a92",
@@ -114,6 +120,8 @@ DARK = Theme(
     kept="#5aa2f5",
     lost="#f2ae3d",
     scene="#12151a",
+    ground="#272b32",
+    grid="#434a55",
     body="#aab1bd",
     arm="#7f8998",
     ghost="#4fd0d8",

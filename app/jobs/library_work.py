@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from app.jobs.service import JobReporter, Service
-from app.library.exchange import export_html, export_pdf, export_zip, import_zip
+from app.library.exchange import export_html, export_model, export_pdf, export_zip, import_zip
 from app.operations.session import bring_report_up_to_date
 from core.workers import WorkerPool
 
@@ -29,6 +29,16 @@ class LibraryWork(Service):
         bring_report_up_to_date(session, reporter)
         with WorkerPool(1) as pool:
             export_pdf(session, target, pool, reporter, overwrite=True)
+        return target
+
+    def export_model(self, reporter: JobReporter, session: Path, target: Path) -> Path:  # noqa: ARG002
+        """Write a session's model in its photographed colours and return `target`.
+
+        Raises:
+            InputError: the target cannot be written.
+            SessionError: the session has no coloured model.
+        """
+        export_model(session, target, overwrite=True)
         return target
 
     def export_zip(self, reporter: JobReporter, session: Path, target: Path) -> Path:

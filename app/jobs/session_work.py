@@ -55,6 +55,7 @@ class SessionWork(Service):
         with working_on(task, self._pool, reporter) as pipeline:
             pipeline.import_scan(folder)
             pipeline.quality()
+            pipeline.colors()
 
     def import_mesh(self, reporter: JobReporter, task: SessionTask, path: Path) -> None:
         """Take over a mesh instead of a scan."""
@@ -66,6 +67,7 @@ class SessionWork(Service):
         with working_on(task, self._pool, reporter) as pipeline:
             if pipeline.session.record("scan") is not None:
                 pipeline.quality()
+                pipeline.colors()
             pipeline.collision()
 
     def imagine(self, reporter: JobReporter, task: SessionTask) -> None:
@@ -73,6 +75,7 @@ class SessionWork(Service):
         with working_on(task, self._pool, reporter) as pipeline:
             if pipeline.session.record("scan") is not None:
                 pipeline.quality()
+                pipeline.colors()
             pipeline.imagination()
 
     def compare_meshes(self, reporter: JobReporter, before: TriangleMesh, after: TriangleMesh) -> FloatArray:

@@ -21,10 +21,11 @@ from zipfile import ZIP_DEFLATED, ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from app.library.places import free_folder
 from app.library.session_folder import REPORT_FILE, fingerprint, newest_change_ns, session_files
-from core.errors import InputError, SessionError, StageError
+from core.errors import InputError, Remedy, SessionError, StageError
 from core.files import check_regular, reason
 from core.formats import excerpt
 from core.progress import Reporter
+from core.reconstruction.colors import MODEL_FILE, ModelColors
 from core.session import Session, explained
 from core.session.header import HEADER_FILE
 from core.workers import Task, WorkerPool
@@ -64,6 +65,24 @@ def export_html(session: Path, target: Path, overwrite: bool = False) -> None:
     report = _report(session)
     with _written_whole(target, overwrite) as unfinished:
         shutil.copyfile(report, unfinished)
+
+
+def export_model(session: Path, target: Path, overwrite: bool = False) -> None:
+    """Write a session's model with its photographed colours as PLY or GLB, by the target's ending.
+
+    Raises:
+        InputError: another ending, or the target cannot be written, or exists and is not to be overwritten.
+        SessionError: the session has no coloured model.
+    """
+    if not (session / "colors" / MODEL_FILE).is_file():
+        raise SessionError(f"{session} holds no coloured model; reconstruct its scan.", Remedy.RUN_AGAIN)
+    model = ModelColors.load(session / "colors").model
+    writers = {".ply": model.write_ply, ".glb": model.write_glb}
+    writer = writers.get(target.suffix.lower())
+    if writer is None:
+        raise InputError(f"{target} cannot be written: models are written as .ply or .glb.")
+    with _written_whole(target, overwrite) as unfinished:
+        writer(unfinished)
 
 
 def export_pdf(

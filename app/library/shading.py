@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image, ImageDraw
 
 from core.geometry import FloatArray
@@ -13,6 +14,8 @@ from core.mesh import TriangleMesh
 _BACKGROUND = (242, 243, 239)
 _BODY = np.array([200.0, 190.0, 176.0])
 _CANDY, _CANDY_EDGE = (46, 125, 80), (20, 66, 40)
+_PHOTO_GAIN = 1.25
+"""Photographed colours hold their shadows already."""
 _MARGIN = 0.1
 _SUPERSAMPLING = 2
 _TO_EYE = np.array([0.55, -0.95, 0.85])
@@ -24,6 +27,7 @@ def shaded_picture(
     size_px: tuple[int, int],
     candies_m: FloatArray | None = None,
     candy_radius_m: float = 0.0,
+    rgb: npt.NDArray[np.uint8] | None = None,
 ) -> Image.Image:
     """Return a mesh (z up) seen obliquely from above, in parallel projection; 100,000 faces take a second.
 
@@ -32,6 +36,7 @@ def shaded_picture(
         size_px: width and height.
         candies_m: (N, 3) centres of candies that lie on it, drawn as discs; none: without.
         candy_radius_m: their radius.
+        rgb: (V, 3) colour of each vertex; none: all are of the colour of clay.
     """
     width, height = (_SUPERSAMPLING * length for length in size_px)
     picture = Image.new("RGB", (width, height), _BACKGROUND)
@@ -42,7 +47,8 @@ def shaded_picture(
     corners = fit.px(mesh.vertices_m @ to_picture)[mesh.faces]
     normals = _normals(mesh)
     brightness = 0.35 + 0.65 * np.abs(normals @ (_TO_LIGHT / np.linalg.norm(_TO_LIGHT)))
-    colors = (brightness[:, None] * _BODY).astype(int)
+    body = _BODY if rgb is None else _PHOTO_GAIN * rgb[mesh.faces].mean(axis=1)
+    colors = np.minimum(brightness[:, None] * body, 255).astype(int)
     depths = (mesh.vertices_m @ to_eye)[mesh.faces].mean(axis=1)
     candies = np.zeros((0, 3)) if candies_m is None else candies_m
     discs = fit.px(candies @ to_picture)

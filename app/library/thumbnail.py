@@ -1,4 +1,4 @@
-"""A small picture of a session, stored in its folder: its evidence, else its scan, else its mesh.
+"""A small picture of a session, stored in its folder: its coloured model, its evidence, its scan or its mesh.
 
 Heavy imports come late: a list of sessions only asks whether there is a picture.
 """
@@ -67,6 +67,8 @@ def make_thumbnail(session: Path) -> Path | None:
 
 
 def _source(session: Path, records: Mapping[str, StageRecord]) -> Path | None:
+    if "colors" in records:
+        return session / "colors" / "model.ply"
     if "evidence" in records and _END_STILL in records["evidence"].files:
         return session / "evidence" / _END_STILL
     if "scan" in records:
@@ -81,7 +83,11 @@ def _draw(source: Path) -> Image:
     if source.suffix == ".ply":
         from app.library.shading import shaded_picture
         from core.mesh_file import read_ply
+        from core.reconstruction.colors import ModelColors
 
+        if source.parent.name == "colors":
+            model = ModelColors.load(source.parent).model
+            return shaded_picture(model.mesh, SIZE_PX, rgb=model.rgb)
         return shaded_picture(read_ply(source), SIZE_PX)
     try:
         with Image.open(BytesIO(read_content(source))) as picture:

@@ -10,6 +10,7 @@ from core.parameters.reconstruction import CollisionParameters, ReconstructionPa
 from core.quality.cavity import coarse_volume
 from core.quality.measures import ScanQuality
 from core.quality.verdict import assess
+from core.reconstruction.colors import ModelColors, photographed
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
 from core.scan import crop_box_of, stored_scan
@@ -37,6 +38,13 @@ def quality_job(
     volume = coarse_volume(scan, crop_box_of(scan, parameters))
     reconstruction = Reconstruction.load(reconstruction_folder)
     return assess(scan, volume, reconstruction, table_height_m=table_height_m), []
+
+
+def colors_job(scan_folder: Path, reconstruction_folder: Path) -> tuple[ModelColors, list[str]]:
+    """Colour what was reconstructed by the images of its scan."""
+    scan, found = stored_scan(scan_folder, WorkerReporter()), Reconstruction.load(reconstruction_folder)
+    posed = scan if found.refinement is None else found.refinement.applied_to(scan)
+    return photographed(found.mesh, posed), []
 
 
 def collision_job(

@@ -27,6 +27,7 @@ from core.pipeline.running import RUNS, Given, Tools, with_n_pour
 from core.pipeline.session_view import IMAGINED, SessionView
 from core.progress import Reporter
 from core.quality.measures import ScanQuality
+from core.reconstruction.colors import ModelColors
 from core.reconstruction.result import Reconstruction
 from core.report import write_report
 from core.scan import Scan, read_scan, write_scan
@@ -149,6 +150,11 @@ class Pipeline:
         found: ScanQuality = self.result("quality")
         return found
 
+    def colors(self) -> ModelColors:
+        """Colour the reconstructed surface by the scan's images."""
+        found: ModelColors = self.result("colors")
+        return found
+
     def surface(self) -> TriangleMesh:
         """Return the object's mesh, reconstructed or imported."""
         mesh: TriangleMesh = self.result(source_of(self.session)).mesh
@@ -212,6 +218,8 @@ class Pipeline:
         """Write the session's report and return its path."""
         evidence = self.evidence()
         is_scan = source_of(self.session) != MESH
+        if is_scan:
+            self.colors()
         content = gather(
             self.session,
             (self._preset, load_preset(self._preset) if self._base is None else self._base),

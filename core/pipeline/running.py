@@ -31,9 +31,10 @@ from core.motion.pour.feasibility import PourMotions, feasible_pours
 from core.motion.pour.planning import judge_pours
 from core.parameters import Parameters
 from core.pipeline.given_mesh import GivenMesh
-from core.pipeline.jobs import collision_job, quality_job, reconstruction_job
+from core.pipeline.jobs import collision_job, colors_job, quality_job, reconstruction_job
 from core.progress import Reporter
 from core.quality.measures import ScanQuality
+from core.reconstruction.colors import ModelColors
 from core.reconstruction.result import Reconstruction
 from core.stages import MESH, SCAN
 from core.workers import RunHere, Task, TaskRunner
@@ -138,6 +139,13 @@ def _assess(given: Given) -> ScanQuality:
     table_height_m = given.scan_facts.get("table_height_m")
     task = Task(quality_job, (*folders, given.parameters.reconstruction, table_height_m))
     result: ScanQuality = given.in_worker(task, "quality")
+    return result
+
+
+def _color(given: Given) -> ModelColors:
+    assert given.folder is not None, "a scan is read from its session"
+    task = Task(colors_job, (given.folder / SCAN, given.folder / "reconstruction"))
+    result: ModelColors = given.in_worker(task, "colors")
     return result
 
 
@@ -250,6 +258,7 @@ RUNS: dict[str, StageRun] = {
     MESH: StageRun(_given, GivenMesh.load),
     "reconstruction": StageRun(_reconstruct, Reconstruction.load),
     "quality": StageRun(_assess, ScanQuality.load),
+    "colors": StageRun(_color, ModelColors.load),
     "collision": StageRun(_collide, CollisionModel.load),
     "containability": StageRun(_drop, Drop.load),
     "judgement": StageRun(_judge, Judgement.load),

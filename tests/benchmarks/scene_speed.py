@@ -14,14 +14,17 @@ from PySide6.QtCore import QCoreApplication, QEventLoop, Qt
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QApplication
 
-from app.gui.views.scene import ColorScale, Scene3D, cylinder_mesh, revolved_mesh
+from app.gui.views.scene import ColorScale, Scene3D, prepare_mesh, revolved_mesh
 from app.gui.views.scene.shapes import Shape
 from core.geometry import FloatArray, make_pose
+from core.imagination.rendering.shapes import candy_mesh
 from core.motion.arm_models import UR5
+from core.parameters import Parameters
 
 SIZES = ((900, 600), (1280, 800))
 N_CANDIES = 300
 N_FRAMES = 60
+_TURNS = np.random.default_rng(1).normal(size=(N_CANDIES, 4))
 _JOINTS_RAD = np.array([0.3, -1.6, 1.6, -1.5, -1.57, 0.0])
 
 
@@ -48,11 +51,15 @@ def replay_scene(n_faces: int) -> Scene3D:
     scene = Scene3D()
     scale = ColorScale("Height", "mm", 0, 100)
     vertices, faces = mug(n_faces)
-    scene.set_mesh("object", vertices, faces, values=1000 * vertices[:, 2], scale=scale)
-    scene.set_mesh("platform", *cylinder_mesh(0.12, 0.02), T_world=make_pose(np.eye(3), (0, 0, -0.02)))
+    heights_mm = 1000 * vertices[:, 2]
+    scene.set_prepared_mesh(
+        "object", prepare_mesh(vertices, faces, values=heights_mm, scale=scale, is_shaded=True)
+    )
+    scene.set_ground("ground", (0, 0, 0), (0.4, 0.4), vertices)
     scene.set_arm("arm", UR5, _JOINTS_RAD)
     scene.set_pose("arm", make_pose(np.eye(3), (-0.55, 0, 0)))
-    scene.set_candies("candies", N_CANDIES, 0.006, np.arange(N_CANDIES) % 3 > 0)
+    candy = candy_mesh(Parameters().particle)
+    scene.set_candies("candies", N_CANDIES, (candy.vertices_m, candy.faces), np.arange(N_CANDIES) % 3 > 0)
     scene.show_scale(scale)
     scene.fit("object")
     return scene
@@ -86,7 +93,7 @@ def draw(scene: Scene3D, positions_m: FloatArray) -> None:
     waiting = QEventLoop()
     view = scene.findChild(QOpenGLWidget)
     view.frameSwapped.connect(waiting.quit)
-    scene.set_candy_positions("candies", positions_m)
+    scene.set_candy_poses("candies", positions_m, _TURNS)
     waiting.exec()
     view.frameSwapped.disconnect(waiting.quit)
 

@@ -20,7 +20,7 @@ from core.stages import (
     stages_of,
 )
 
-RECONSTRUCTION = ["reconstruction", "quality"]
+RECONSTRUCTION = ["reconstruction", "quality", "colors"]
 PHYSICS = ["containability", "judgement", "amount", "pouring", "risk"]
 POURS = ["pouring", "risk", "evidence"]
 FIRST_STALE = {

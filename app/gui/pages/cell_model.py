@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.gui.views.scene.shapes import box_mesh
+from app.gui.views.scene.occlusion import surface_points_m
+from app.gui.views.scene.shapes import box_mesh, cylinder_mesh
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -21,7 +22,13 @@ if TYPE_CHECKING:
 _TABLE_M = 0.03
 _BASE_M = 0.12
 """About the robot's foot."""
+_FOOT_M = 0.075
+"""The foot's radius."""
 _OBSTACLE = "obstacle"
+_GRID_M = 0.02
+_N_CASTERS = 8_000
+_LIFT_M = 0.0008
+"""A ground on a box is that much above it, so that the two do not flicker."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,14 +51,31 @@ class CellModel:
     platform: Shape
     obstacles: tuple[Shape, ...]
 
-    def draw_furniture(self, scene: Scene3D, table: str, platform: str, platform_opacity: float) -> None:
-        """Draw everything but the arm in place of what stood there before; `table`, `platform`: colours."""
+    def draw_furniture(self, scene: Scene3D) -> None:
+        """Draw everything but the arm in place of what stood there before."""
         for name in [name for name in scene.layers() if name.startswith(_OBSTACLE)]:
             scene.remove(name)
-        scene.set_mesh("table", *self.table, color=table)
-        scene.set_mesh("platform", *self.platform, color=platform, opacity=platform_opacity)
+        scene.set_mesh("table", *self.table, color="ground")
+        scene.set_mesh("platform", *self.platform, color="raised")
         for k, obstacle in enumerate(self.obstacles):
             scene.set_mesh(f"{_OBSTACLE} {k}", *obstacle, color="muted", opacity=0.6)
+        standing = [self.platform, *self.obstacles, cylinder_mesh(_FOOT_M, _BASE_M)]
+        casters = [surface_points_m(*shape, _N_CASTERS) for shape in standing]
+        _draw_top(scene, "table top", self.table, np.vstack(casters), "ground", _GRID_M)
+
+    def draw_platform_top(self, scene: Scene3D, casters_m: npt.ArrayLike) -> None:
+        """Draw the platform's top, shaded by points (N, 3) of what stands on it."""
+        _draw_top(scene, "platform top", self.platform, casters_m, "raised", 0.0)
+
+
+def _draw_top(
+    scene: Scene3D, name: str, box: Shape, casters_m: npt.ArrayLike, color: str, grid_m: float
+) -> None:
+    """Draw the upper side of a box as a ground."""
+    low, high = box[0].min(axis=0), box[0].max(axis=0)
+    center = [*(low + high)[:2] / 2, high[2] + _LIFT_M]
+    half = (high - low)[:2] / 2
+    scene.set_ground(name, center, half, casters_m, grid_m=grid_m, fades=False, color=color)
 
 
 def cell_model(cell: CellSettings, on_table_m: npt.ArrayLike, margin_m: float) -> CellModel:

@@ -60,13 +60,15 @@ class FactGrid(QWidget):
         while (item := self._grid.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:
                 widget.deleteLater()
-        if any(fact.before for fact in facts):
+        has_before = any(fact.before for fact in facts)
+        if has_before:
             self._put(0, 1, self.tr("now"), "muted")
             self._put(0, 2, self.tr("last"), "muted")
         for k, fact in enumerate(facts):
             row, column = k // self._per_row + 1, 2 * (k % self._per_row)
             self._put(row, column, fact.title, "muted", fact.tooltip)
-            self._put(row, column + 1, fact.value, "", fact.tooltip, 3 if fact.is_wide else 1)
+            is_wide = fact.is_wide or (self._per_row == 1 and not has_before)
+            self._put(row, column + 1, fact.value, "", fact.tooltip, 3 if is_wide else 1)
             self._put(row, column + 2, fact.before, "muted", fact.tooltip)
 
     def _put(self, row: int, column: int, text: str, role: str, tip: str = "", span: int = 1) -> None:
@@ -74,9 +76,11 @@ class FactGrid(QWidget):
             return
         label = QLabel(text)
         label.setToolTip(tip)
+        label.setWordWrap(span > 1)
         if role:
             label.setProperty("role", role)
         if column:
             label.setFont(tabular(self.font()))
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self._grid.addWidget(label, row, column, 1, span)
+        top = Qt.AlignmentFlag.AlignTop if not column else Qt.AlignmentFlag(0)
+        self._grid.addWidget(label, row, column, 1, span, top)

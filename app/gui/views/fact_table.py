@@ -160,6 +160,7 @@ class FactTable(QTableView):
         super().__init__(parent)
         self.setObjectName("fact_table")
         self.has_marks = False
+        self._is_grown = False
         self._columns = tuple(columns)
         self._rows: tuple[Row, ...] = ()
         self._model = QStandardItemModel(self)
@@ -208,10 +209,24 @@ class FactTable(QTableView):
         self._model.setRowCount(0)
         for row in rows:
             self._model.appendRow(self._items(row))
+        if self._is_grown:
+            self._grow()
         *firsts, last = range(len(self._columns))
         for column in firsts:
             self.setColumnWidth(column, self._fitting_width(column))
         self.setColumnWidth(last, min(self._fitting_width(last), _LAST_PX))  # it takes the rest anyway
+
+    def grow_with_rows(self) -> None:
+        """Be as high as all rows from now on, and scroll nothing: what the table is in does."""
+        self._is_grown = True
+        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._grow()
+
+    def _grow(self) -> None:
+        heading = self.horizontalHeader().sizeHint().height()
+        rows = len(self._rows) * self.verticalHeader().defaultSectionSize()
+        self.setFixedHeight(heading + rows + GRID_PX // 2)
 
     def _items(self, row: Row) -> list[QStandardItem]:
         items = []

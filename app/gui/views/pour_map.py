@@ -31,6 +31,8 @@ class MappedPour:
         spread: standard deviation of P over the packings; None with one packing.
         is_feasible: whether the arm can make it; None when that was not checked yet.
         reason: why it is not feasible, or what is worth knowing of it.
+        clean_at_least: chance that it spills nothing, lower 95 % bound, 0..1; None where no tries are known.
+        n_tries: how often it was tried.
     """
 
     i: int
@@ -41,6 +43,8 @@ class MappedPour:
     spread: float | None = None
     is_feasible: bool | None = None
     reason: str = ""
+    clean_at_least: float | None = None
+    n_tries: int = 0
 
 
 class PourMap(QWidget):
@@ -66,6 +70,7 @@ class PourMap(QWidget):
         self._rotation_deg = 0.0
         self._other: NDArray[np.float64] | None = None
         self._other_label = ""
+        self._wants_clean = True
 
     @property
     def selection(self) -> tuple[int, int] | None:
@@ -107,6 +112,21 @@ class PourMap(QWidget):
         self._other_label = label
         self._refresh()
 
+    @property
+    def has_clean(self) -> bool:
+        """Whether the chance that nothing is spilled is known of every pour."""
+        return bool(self._cells) and all(cell.clean_at_least is not None for cell in self._cells.values())
+
+    @property
+    def shows_clean(self) -> bool:
+        """Whether cells are coloured by that chance and not by P; a comparison is of P."""
+        return self._wants_clean and self.has_clean and self._other is None
+
+    def show_clean(self, is_wanted: bool) -> None:
+        """Colour the cells by the chance that nothing is spilled, where it is known, or by P."""
+        self._wants_clean = is_wanted
+        self._refresh()
+
     def select(self, i: int, j: int) -> None:
         """Outline a pour, without a signal; one that is not there ends the selection."""
         self._selection = (i, j) if (i, j) in self._cells else None
@@ -137,6 +157,12 @@ class PourMap(QWidget):
             self.tr("pivot {mm:.1f} mm from the pour centre (L_idt)").format(mm=1000 * cell.indent_m),
             self._describe_p(cell),
         ]
+        if cell.clean_at_least is not None:
+            lines.append(
+                self.tr("clean pour: at least {percent:.0f} % likely, after {n} tries").format(
+                    percent=100 * cell.clean_at_least, n=cell.n_tries
+                )
+            )
         if self._other is not None:
             lines.append(
                 self.tr("{points} points against {label} ({percent:.0f} %)").format(
@@ -234,10 +260,18 @@ class PourMap(QWidget):
     def _legend(self) -> str:
         return self.tr(
             "Each cell is a pour: its direction from the pour centre and its distance from it.\n"
-            "The number is P in per cent: how many candies landed inside.\n"
+            "{number}\n"
             "The arc at the inner edge is the spread over the packings; a full one is 25 points or more.\n"
             "Hatched: the arm cannot make it. Star: chosen. Arrow keys move the selection."
-        )
+        ).format(number=self._number_words())
+
+    def _number_words(self) -> str:
+        if self.shows_clean:
+            return self.tr(
+                "The large number: a pour that spills nothing is at least so likely, in per cent, with 95 % "
+                "confidence.\nThe small one is P: how many candies landed inside, on average."
+            )
+        return self.tr("The number is P in per cent: how many candies landed inside, on average.")
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Paint the cells, then what lies over them."""
@@ -246,17 +280,44 @@ class PourMap(QWidget):
         if not self._cells:
             painter.paint_empty(self.tr("The pours appear here\nonce they have been imagined"))
         for key, cell in self._cells.items():
-            other = None if self._other is None else float(self._other[key])
-            away_px = 3.0 if key == self._chosen and other is not None else 0.0
-            painter.paint_cell(*key, cell.p, cell.spread, cell.is_feasible is False, other, away_px)
+            small = self._small_text(cell)
+            away_px = 3.0 if key == self._chosen and small else 0.0
+            painter.paint_cell(
+                *key, self._value(cell), small, cell.spread, cell.is_feasible is False, away_px
+            )
         if self._chosen is not None:
-            painter.paint_chosen(*self._chosen, self._cells[self._chosen].p)
+            painter.paint_chosen(*self._chosen, self._value(self._cells[self._chosen]))
         if self._selection is not None:
             painter.paint_selected(*self._selection, self.hasFocus())
         painter.paint_rim(self._rotation_deg, bool(self._cells))
-        indents = [self._cells[0, j].indent_m for j in range(self.shape[1])] if self._cells else []
-        painter.paint_legend(indents, self._other_label if self._other is not None else "")
+        title = self.tr("Clean pour, at least") if self.shows_clean else self.tr("Candies inside (P)")
+        painter.paint_legend(title, self._legend_words(), bool(self._cells))
         painter.end()
+
+    def _value(self, cell: MappedPour) -> float:
+        """What the colour and the large number tell, 0 to 1."""
+        if self.shows_clean and cell.clean_at_least is not None:
+            return cell.clean_at_least
+        return cell.p
+
+    def _small_text(self, cell: MappedPour) -> str:
+        if self._other is not None:
+            return points_text(cell.p - float(self._other[cell.i, cell.j]))
+        return self.tr("P {percent:.0f}").format(percent=100 * cell.p) if self.shows_clean else ""
+
+    def _legend_words(self) -> list[str]:
+        """What the small numbers and the rings are."""
+        if not self._cells:
+            return []
+        words = []
+        if self.shows_clean:
+            words.append(self.tr("P: candies inside on average, %"))
+        elif self._other is not None:
+            words.append(self.tr("± to {label}").format(label=self._other_label))
+        indents = [self._cells[0, j].indent_m for j in range(self.shape[1])]
+        distances = ", ".join(f"{1000 * indent:.0f}" for indent in indents)
+        words.append(self.tr("rings: pivot {mm} mm from the centre").format(mm=distances))
+        return words
 
     def changeEvent(self, event: QEvent) -> None:
         """Repaint in another theme."""

@@ -11,15 +11,17 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.color_scale import text_on, viridis
-from app.gui.views.painting import hatch, smaller, tabular
+from app.gui.views.painting import draw_elided, hatch, smaller, tabular
 from core.report.plot_geometry import Arc, PourMapLayout
 
 RIM_PX = 26
 """Around the rings, for the directions."""
-LEGEND_PX = 40
-"""Under them, for the colour scale and the rings' distances."""
+LEGEND_PX = 88
+"""Under them, for the colour scale, the marks and the rings' distances."""
 _FULL_ARC = 0.25
 """Spread at which the arc is as wide as its cell."""
+_LEGEND_STAR_PX = 6.0
+_LEAST_POINTS = 7.5
 _SMALL_POINTS = 10.0
 """Font size up to which the star is small, too."""
 
@@ -73,17 +75,17 @@ class PourMapPainter(QPainter):
         self,
         i: int,
         j: int,
-        p: float,
+        value: float,
+        small: str,
         spread: float | None,
         is_hatched: bool,
-        other: float | None,
         away_px: float,
     ) -> None:
-        """Draw one cell: its colour and number, its spread, and whether the arm cannot do it.
+        """Draw one cell: its colour and number, a small one, its spread, and whether the arm cannot do it.
 
-        The number is `away_px` off the middle, away from where the star would be.
+        The numbers are `away_px` off the middle, away from where the star would be.
         """
-        color = viridis(p)
+        color = viridis(value)
         ink = text_on(color)
         path = self._outline(i, j, 1.0)
         self.fillPath(path, color)
@@ -94,9 +96,9 @@ class PourMapPainter(QPainter):
         if spread:
             arc = self._layout.inner_arc(i, j, min(spread / _FULL_ARC, 1.0), 5.0)
             self.strokePath(self._path(arc), QPen(ink, 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
-        lines = [(f"{100 * p:.0f}", self._points, True)]
-        if other is not None:
-            lines.append((points_text(p - other), self._points - 1.5, False))
+        lines = [(f"{100 * value:.0f}", self._points, True)]
+        if small:
+            lines.append((small, max(self._points - 3, _LEAST_POINTS), False))
         middle = place(self._center, *self._layout.middle(i, j))
         off = middle - self._star(i, j)
         middle += off * (away_px / max(hypot(off.x(), off.y()), 1.0))
@@ -144,11 +146,13 @@ class PourMapPainter(QPainter):
             self.drawText(QPointF(middle.x() - size.center().x(), top - size.top()), text)
             top += size.height() + gap
 
-    def paint_chosen(self, i: int, j: int, p: float) -> None:
+    def paint_chosen(self, i: int, j: int, value: float) -> None:
         """Outline the chosen cell inside and put a star into its corner."""
-        ink = text_on(viridis(p))
+        ink = text_on(viridis(value))
         self.strokePath(self._outline(i, j, 3.0), QPen(ink, 2))
-        center, size = self._star(i, j), self._star_px
+        self._draw_star(self._star(i, j), self._star_px, ink)
+
+    def _draw_star(self, center: QPointF, size: float, ink: QColor) -> None:
         points = [
             center + QPointF(r * sin(k * pi / 5), -r * cos(k * pi / 5))
             for k, r in ((k, size if k % 2 == 0 else 0.43 * size) for k in range(10))
@@ -188,39 +192,73 @@ class PourMapPainter(QPainter):
         name = QCoreApplication.translate("PourMap", "Pour\ncentre")
         self.drawText(box, Qt.AlignmentFlag.AlignCenter, name)
 
-    def paint_legend(self, indents_m: Sequence[float], other_label: str) -> None:
-        """Draw the colour scale, 0 to 100 %, and write how far the rings are from the middle."""
-        top = self._size.height() - LEGEND_PX + 4
+    def paint_legend(self, title: str, words: Sequence[str], has_marks: bool) -> None:
+        """Draw the colour scale, 0 to 100 %, the marks, and lines of words, under the rings.
+
+        Args:
+            title: what the colours stand for.
+            words: a line each.
+            has_marks: whether hatching, arc and star are explained.
+        """
         self.setFont(smaller(self._font))
+        line = QFontMetricsF(self.font()).height()
+        left = float(GRID_PX)
+        top = self._size.height() - LEGEND_PX + 2.0
+        self._paint_scale(title, QRectF(left, top, self._size.width() - 2 * left, line))
+        y = top + 2.3 * line
+        if has_marks:
+            self._paint_marks(left, y, line)
+            y += 1.25 * line
+        self.setPen(self._theme.color("muted"))
+        for text in words:
+            box = QRectF(left, y, self._size.width() - 2 * left, line)
+            draw_elided(self, box, text, Qt.AlignmentFlag.AlignLeft)
+            y += line
+
+    def _paint_scale(self, title: str, row: QRectF) -> None:
+        """The title at the left of a row, at its right the bar with its numbers under it."""
         metrics = QFontMetricsF(self.font())
-        bar = QRectF(0, top, min(150.0, self._size.width() * 0.4), 10)
-        bar.moveLeft(self._size.width() - bar.width() - GRID_PX - metrics.horizontalAdvance("100 %") / 2)
+        bar = QRectF(0, row.top() + 3, 0.4 * row.width(), row.height() - 5)
+        bar.moveRight(row.right() - metrics.horizontalAdvance("100 %") / 2)
         gradient = QLinearGradient(bar.topLeft(), bar.topRight())
         for k in range(11):
             gradient.setColorAt(k / 10, viridis(k / 10))
         scale = QPainterPath()
         scale.addRoundedRect(bar, 2, 2)
         self.fillPath(scale, gradient)
+        self.setPen(self._theme.color("text"))
+        draw_elided(
+            self, row.adjusted(0, 0, bar.left() - row.right() - GRID_PX, 0), title, Qt.AlignmentFlag.AlignLeft
+        )
         self.setPen(self._theme.color("muted"))
         for ratio in (0.0, 0.5, 1.0):
             box = QRectF(0, bar.bottom() + 2, 60, metrics.height())
             box.moveLeft(bar.left() + ratio * bar.width() - 30)
             self.drawText(box, Qt.AlignmentFlag.AlignHCenter, f"{100 * ratio:.0f} %")
-        self._paint_words(bar, indents_m, other_label)
 
-    def _paint_words(self, bar: QRectF, indents_m: Sequence[float], other_label: str) -> None:
-        metrics = QFontMetricsF(self.font())
-        name = QRectF(bar.left() - 26, bar.top() - 3, 22, metrics.height())
-        self.drawText(name, Qt.AlignmentFlag.AlignRight, "P")
-        lines = []
-        if indents_m:
-            distances = ", ".join(f"{1000 * indent:.0f}" for indent in indents_m)
-            lines.append(QCoreApplication.translate("PourMap", "rings {mm} mm").format(mm=distances))
-        if other_label:
-            lines.append(QCoreApplication.translate("PourMap", "± to {label}").format(label=other_label))
-        for k, line in enumerate(lines):
-            box = QRectF(
-                GRID_PX, bar.top() - 3 + k * metrics.height(), name.left() - GRID_PX, metrics.height()
-            )
-            text = metrics.elidedText(line, Qt.TextElideMode.ElideRight, box.width())
-            self.drawText(box, Qt.AlignmentFlag.AlignLeft, text)
+    def _paint_marks(self, left: float, top: float, line: float) -> None:
+        """What hatching, arc and star mean, side by side."""
+        translate, metrics = QCoreApplication.translate, QFontMetricsF(self.font())
+        ink, muted = self._theme.color("text"), self._theme.color("muted")
+        words = (
+            translate("PourMap", "arm cannot"),
+            translate("PourMap", "spread"),
+            translate("PourMap", "chosen"),
+        )
+        x = left
+        for k, text in enumerate(words):
+            box = QRectF(x, top + 1, 1.5 * line, line - 2)
+            if k == 0:
+                path = QPainterPath()
+                path.addRect(box)
+                hatch(self, path, ink)
+                self.strokePath(path, QPen(muted, 1))
+            elif k == 1:
+                self.setPen(QPen(ink, 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+                self.drawLine(box.bottomLeft() + QPointF(2, -4), box.bottomRight() + QPointF(-2, -4))
+            else:
+                self._draw_star(box.center(), _LEGEND_STAR_PX, ink)
+            self.setPen(muted)
+            x = box.right() + GRID_PX / 2
+            self.drawText(QPointF(x, top + metrics.ascent()), text)
+            x += metrics.horizontalAdvance(text) + 1.5 * GRID_PX

@@ -16,7 +16,7 @@ from core.imagination.recording import Recording
 from core.imagination.rendering.camera import Camera, aabb_corners, frame
 from core.imagination.rendering.evidence import Evidence, show_early
 from core.imagination.rendering.pictures import SUPERSAMPLING, VIEW_PX, reduced, to_png, with_caption
-from core.imagination.rendering.replay import Replay, lowest_point_m, make_replay
+from core.imagination.rendering.replay import Replay, make_replay, standing
 from core.imagination.rendering.scene import OBJECT_COLOR, Picture, Scene
 from core.imagination.results import Containability
 from core.mesh import TriangleMesh
@@ -61,10 +61,10 @@ def open_drop(
 ) -> Iterator[DropView]:
     """Open the scene of a drop; files that Bullet reads go to `folder` as long as it is open."""
     aabb = np.array([surface.aabb_min_m, surface.aabb_max_m])
-    recording = containability.recording
-    ground_m = lowest_point_m(surface, recording.T_world_body) - _GROUND_GAP_M
-    candy_height_m = float(particle_extents_m(parameters.particle)[2])
-    replay = make_replay(recording, containability.retained, ground_m, candy_height_m)
+    recording, ground_m = standing(containability.recording, surface)
+    ground_m -= _GROUND_GAP_M
+    extents_m = particle_extents_m(parameters.particle)
+    replay = make_replay(recording, containability.retained, ground_m, extents_m)
     with Scene(folder, aabb, with_egl) as scene:
         scene.add_ground(ground_m)
         object_id = scene.add_mesh(surface, OBJECT_COLOR)

@@ -84,8 +84,8 @@ def pour_replay(
 ) -> Replay:
     """Prepare a pour's recording; `aabb_m` (2, 3) is the one its candies were counted in."""
     retained = poured_in(recording, aabb_m, parameters.pouring.counted)
-    candy_height_m = float(particle_extents_m(parameters.particle)[2])
-    return make_replay(recording, retained, float(surface.aabb_min_m[2]) - _GROUND_GAP_M, candy_height_m)
+    ground_m = float(surface.aabb_min_m[2]) - _GROUND_GAP_M
+    return make_replay(recording, retained, ground_m, particle_extents_m(parameters.particle))
 
 
 def render_pour_sheet(

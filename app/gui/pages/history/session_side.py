@@ -37,18 +37,20 @@ class ExportKind:
     Attributes:
         key: names it in the program; also the file's suffix.
         method: of `LibraryWork`, that writes it.
-        needs_report: whether it is the report, so that there must be a verdict to report.
+        needs: the stage without which there is nothing to write; empty: none.
     """
 
     key: str
     method: Callable[..., Any]
-    needs_report: bool
+    needs: str
 
 
 KINDS = (
-    ExportKind("html", LibraryWork.export_html, True),
-    ExportKind("pdf", LibraryWork.export_pdf, True),
-    ExportKind("zip", LibraryWork.export_zip, False),
+    ExportKind("html", LibraryWork.export_html, "containability"),
+    ExportKind("pdf", LibraryWork.export_pdf, "containability"),
+    ExportKind("zip", LibraryWork.export_zip, ""),
+    ExportKind("ply", LibraryWork.export_model, "colors"),
+    ExportKind("glb", LibraryWork.export_model, "colors"),
 )
 
 
@@ -68,6 +70,8 @@ def ask_target(
         "html": translate("History", "Report for a browser (*.html)"),
         "pdf": translate("History", "Report for paper (*.pdf)"),
         "zip": translate("History", "Whole session (*.zip)"),
+        "ply": translate("History", "Coloured model to measure (*.ply)"),
+        "glb": translate("History", "Coloured model to show (*.glb)"),
     }
     title = translate("History", "Export {name}").format(name=session.name)
     dialog = QFileDialog(parent, title, str(folder), filters[kind.key])
@@ -177,6 +181,11 @@ class SessionPart(QWidget):
             "html": (self.tr("HTML…"), self.tr("The report as one file for a browser")),
             "pdf": (self.tr("PDF…"), self.tr("The report for paper, A4")),
             "zip": (self.tr("ZIP…"), self.tr("The whole session; another Poursight can import it")),
+            "ply": (self.tr("PLY…"), self.tr("The model in its photographed colours, to measure")),
+            "glb": (
+                self.tr("GLB…"),
+                self.tr("The model in its photographed colours, for slides and viewers"),
+            ),
         }
         for kind in KINDS:
             button = _button(f"export_{kind.key}", *texts[kind.key])
@@ -228,7 +237,7 @@ class SessionPart(QWidget):
             self._form.setRowVisible(self._facts[key], bool(text))
         self._rename.setEnabled(is_idle and not session.problem)
         for kind, button in self._exports.items():
-            is_there = "containability" in session.stages or not kind.needs_report
+            is_there = not kind.needs or kind.needs in session.stages
             button.setEnabled(is_idle and is_there and not session.problem)
         self._compare.setVisible(can_compare)
         self._forget.setVisible(is_elsewhere)

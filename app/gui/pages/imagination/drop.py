@@ -8,12 +8,16 @@ from typing import Literal
 
 import numpy as np
 
+from app.gui.pages.photographed import in_colors
 from app.gui.views.scene import PreparedMesh, prepare_mesh
-from core.geometry import BoolArray, FloatArray
+from app.gui.views.scene.occlusion import surface_points_m
+from app.gui.views.scene.shapes import Shape
+from core.geometry import FloatArray
 from core.imagination.capacity.result import Capacity
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Float32Array, Recording
-from core.imagination.rendering.replay import lowest_point_m, make_replay
+from core.imagination.rendering.replay import make_replay, standing
+from core.imagination.rendering.shapes import candy_mesh
 from core.imagination.results import Containability
 from core.imagination.retention.result import Retention
 from core.mesh import TriangleMesh
@@ -23,10 +27,10 @@ from core.pipeline.session_view import SessionView
 
 PhaseKey = Literal["drop", "tilt_x", "tilt_y", "push"]
 N_PUSHES = 4
-_GROUND_GAP_M = 0.0005
 _OUTLINE_DIRECTIONS = 180
-_NEAR = 0.6
-"""How far from the object, as a share of its size, a fallen candy still belongs to the picture."""
+_N_CASTERS = 15_000
+_MARGIN, _LEAST_SIZES, _MOST_SIZES = 1.8, 3.0, 9.0
+"""The ground reaches so far beyond what fell; at least, and at most, so many times half the object's size."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +66,15 @@ class Moments:
         before, after, share = self._around(time_s)
         positions = self._recording.positions_m
         between: Float32Array = positions[before] + share * (positions[after] - positions[before])
+        return between
+
+    def quaternions(self, time_s: float) -> Float32Array:
+        """Return the candies' orientations (N, 4), (x, y, z, w); not of length one between two moments."""
+        before, after, share = self._around(time_s)
+        first, second = self._recording.quaternions[before], self._recording.quaternions[after]
+        is_opposite = np.einsum("ij,ij->i", first, second) < 0
+        nearer = np.where(is_opposite[:, None], -second, second)
+        between: Float32Array = first + share * (nearer - first)
         return between
 
     def T_world_body(self, time_s: float) -> FloatArray:
@@ -108,9 +121,10 @@ class ShownDrop:
         phases: what happened when.
         n_on_top: candies that lie on the object at the end, but not in its bounding box.
         body: the surface that the physics knew.
-        candy_radius_m: of a ball of about a candy's volume.
-        ground_m: height of the ground, just below everything the object reaches.
-        ground_radius_m: wide enough for what fell near the object.
+        candy: what the physics took a candy for, about its centre.
+        ground_m: height of the ground, on which the object stands.
+        casters_m: (n, 3) points all over it, for its shadow.
+        ground_radius_m: wide enough for all that fell.
         outline_m: (n, 2) the object from above, its hull.
         indents_m: distances of the pivots from the footprint's centre; empty without pours.
     """
@@ -126,8 +140,9 @@ class ShownDrop:
     phases: tuple[Phase, ...]
     n_on_top: int
     body: PreparedMesh
-    candy_radius_m: float
+    candy: Shape
     ground_m: float
+    casters_m: FloatArray
     ground_radius_m: float
     outline_m: FloatArray
     indents_m: tuple[float, ...]
@@ -156,10 +171,9 @@ def load(key: DropKey) -> ShownDrop | None:
     settings, particle = parameters.containability, parameters.particle
     session, capacity, retention = view.session, judgement.capacity, judgement.retention
     surface = CollisionModel.load(session.folder("collision")).surface
-    ground_m = lowest_point_m(surface, containability.recording.T_world_body) - _GROUND_GAP_M
-    # As balls the candies are as thick as they are wide: so thick they lie on the ground.
-    radius_m = float(np.prod(particle_extents_m(particle)) ** (1 / 3)) / 2
-    replay = make_replay(containability.recording, containability.retained, ground_m, 2 * radius_m)
+    recording, ground_m = standing(containability.recording, surface)
+    candy = candy_mesh(particle)
+    replay = make_replay(recording, containability.retained, ground_m, particle_extents_m(particle))
     return ShownDrop(
         containability=containability,
         capacity=capacity,
@@ -173,10 +187,11 @@ def load(key: DropKey) -> ShownDrop | None:
         moments=Moments(replay.recording),
         phases=phases_of(containability, settings),
         n_on_top=_n_on_top(containability),
-        body=prepare_mesh(surface.vertices_m, surface.faces),
-        candy_radius_m=radius_m,
+        body=in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view),
+        casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
+        candy=(candy.vertices_m, candy.faces),
         ground_m=ground_m,
-        ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1], replay.retained),
+        ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1]),
         outline_m=_outline_m(surface),
         indents_m=() if view.pours is None else view.pours.indent_m,
     )
@@ -189,13 +204,13 @@ def _n_on_top(containability: Containability) -> int:
         return int((heights_m >= containability.aabb_m[1, 2]).sum())
 
 
-def _ground_radius_m(surface: TriangleMesh, ends_m: FloatArray, retained: BoolArray) -> float:
+def _ground_radius_m(surface: TriangleMesh, ends_m: Float32Array) -> float:
     """Around the object's middle."""
     middle_m = (surface.aabb_min_m + surface.aabb_max_m)[:2] / 2
     size_m = float(np.linalg.norm(surface.extents_m[:2])) / 2
-    fallen_m = np.linalg.norm(ends_m[~retained, :2] - middle_m, axis=1)
-    near_m = fallen_m[fallen_m < size_m * (1 + _NEAR)]  # NaN is not
-    return max(float(near_m.max(initial=0.0)), 1.2 * size_m)
+    away_m = np.linalg.norm(ends_m[:, :2] - middle_m, axis=1)
+    farthest_m = float(away_m[np.isfinite(away_m)].max(initial=0.0))
+    return min(max(_MARGIN * farthest_m, _LEAST_SIZES * size_m), _MOST_SIZES * size_m)
 
 
 def _outline_m(surface: TriangleMesh) -> FloatArray:

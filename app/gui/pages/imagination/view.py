@@ -14,12 +14,11 @@ from app.gui.pages.imagination.drop import PhaseKey, ShownDrop, push_of
 from app.gui.pages.layouts import lay_around
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.film_strip import FilmStrip, Picture
-from app.gui.views.scene import Scene3D, cylinder_mesh
+from app.gui.views.scene import Scene3D, candy_legend
 from app.gui.views.timeline import Section, Timeline
-from core.geometry import FloatArray, make_pose
+from core.geometry import FloatArray
 
 _SEE_THROUGH = 0.4
-_GROUND_THICK_M = 0.001
 _PICTURE_PX = 88
 _SHEET = "pours.png"
 _DROP_FILM, _POUR_FILM = "drop.mp4", "pour.mp4"
@@ -84,18 +83,18 @@ class DropReplay(QWidget):
             self.timeline.set_sections(drop.moments.duration_s, sections)
             self.timeline.set_time(drop.moments.duration_s)
             if is_first:
-                self.scene.fit("object", "ground", "start")
+                self.scene.fit("object", "candies", "start")
         self._show_legend()
 
     def _fill(self, drop: ShownDrop) -> None:
         found = drop.containability
         self._show_body()
         middle = found.aabb_m.mean(axis=0)
-        under_m = [middle[0], middle[1], drop.ground_m - _GROUND_THICK_M]
-        disc = cylinder_mesh(drop.ground_radius_m, _GROUND_THICK_M)
-        self.scene.set_mesh("ground", *disc, color="line", T_world=make_pose(np.eye(3), under_m))
+        self.scene.set_ground(
+            "ground", [*middle[:2], drop.ground_m], [drop.ground_radius_m] * 2, drop.casters_m
+        )
         self.scene.set_line("start", _rectangle_m(found.drop_positions_m), color="muted", width_px=1)
-        self.scene.set_candies("candies", found.n_drop, drop.candy_radius_m, found.retained)
+        self.scene.set_candies("candies", found.n_drop, drop.candy, found.retained)
 
     def _show_body(self) -> None:
         if self._drop is not None:
@@ -107,7 +106,8 @@ class DropReplay(QWidget):
         if drop is None:
             self._now.clear()
             return
-        self.scene.set_candy_positions("candies", drop.moments.positions_m(time_s))
+        moments = drop.moments
+        self.scene.set_candy_poses("candies", moments.positions_m(time_s), moments.quaternions(time_s))
         self.scene.set_pose("object", drop.moments.T_world_body(time_s))
         self._now.setText(self._words(drop, time_s))
 
@@ -129,14 +129,11 @@ class DropReplay(QWidget):
         if self._drop is None:
             self._legend.clear()
             return
-        theme, found = theme_of(self), self._drop.containability
+        found = self._drop.containability
         kept = self.tr("{n} kept").format(n=found.n_in)
         lost = self.tr("{n} lost").format(n=found.n_drop - found.n_in)
         self._legend.setTextFormat(Qt.TextFormat.RichText)
-        self._legend.setText(
-            f'<span style="color:{theme.kept}">●</span> {kept} &nbsp; '
-            f'<span style="color:{theme.lost}">◆</span> {lost}'
-        )
+        self._legend.setText(candy_legend(theme_of(self), kept, lost))
 
     @override
     def changeEvent(self, event: QEvent) -> None:

@@ -2,49 +2,33 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QHBoxLayout, QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.background_page import BackgroundPage
+from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.page import SidePanel, SplitView
 from app.gui.pages.pours.choice import ChoiceBox, SelectedBox
 from app.gui.pages.pours.comparison import CompareBox, OtherPours, VariantRun, load_grid
+from app.gui.pages.pours.pour_scene import PourScene
 from app.gui.pages.pours.results import PoursKey, ShownPours, load_pours
 from app.gui.remedies import worded
 from app.gui.theme import GRID_PX
 from app.gui.views.pour_map import MappedPour, PourMap
-from app.gui.views.scene import Scene3D
-from app.gui.views.timeline import Section, Timeline
 from app.jobs.session_work import SessionWork
 from app.operations.choosing import choose_pour
 from core.errors import PoursightError
-from core.geometry import FloatArray
-from core.imagination.recording import Recording
 from core.imagination.results import PourGrid
 from core.session.operator_choice import withdraw_operator_choice
 
 _MAP_PX = 400
-BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND = (
-    "object",
-    "cup",
-    "candies",
-    "pivots",
-    "pivot",
-    "direction",
-    "center",
-    "around",
-)
-_ARROW_M = 0.07
-_SEE_THROUGH = 0.45
-"""Of the object, so that the candies in it are seen."""
+_CLEAN, _INSIDE = "clean", "inside"
 
 
 class PoursPage(BackgroundPage[PoursKey, ShownPours]):
@@ -55,7 +39,18 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk, load_pours)
         self._before: PourGrid | None = None
+        self._can_show_clean = True
         self._map = PourMap()
+        self._measure = ModeRow("pour_measure")
+        self._measure.add(
+            _CLEAN,
+            self.tr("Clean pour"),
+            self.tr("How likely a pour that spills nothing is, at least (95 %)"),
+        )
+        self._measure.add(
+            _INSIDE, self.tr("Candies inside"), self.tr("P: how many candies land inside, on average")
+        )
+        self._measure.chosen.connect(lambda: self._map.show_clean(self._measure.mode == _CLEAN))
         self._selected = SelectedBox()
         self._scene = PourScene()
         self._choice = ChoiceBox()
@@ -76,6 +71,11 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         column = QVBoxLayout(self._left)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
+        row = QHBoxLayout()
+        row.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, 0)
+        row.addWidget(self._measure)
+        row.addStretch(1)
+        column.addLayout(row)
         column.addWidget(self._map, 1)
         column.addWidget(self._selected)
         view = QSplitter(Qt.Orientation.Horizontal)
@@ -122,6 +122,7 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         grid = None if pours is None else pours.grid
         self._left.setVisible(grid is not None)
         self._map.set_pours([] if pours is None else cells_of(pours), None if pours is None else pours.chosen)
+        self._offer_measures()
         if pours is None:
             self._scene.show_nothing(self.tr("The object and its pours appear here."))
         elif not is_same:
@@ -131,6 +132,19 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         self._compare.show_grid(grid, self._before)
         self._choice.show_pours(pours, self.failure or self._empty_text())
         self.update_actions()
+
+    def _offer_measures(self) -> None:
+        """Without tries, and against another grid, only P is known."""
+        tip = self.tr("How likely a pour that spills nothing is, at least (95 %)")
+        if self._compare.other is not None:
+            tip = self.tr("Pours are compared by the candies that land inside")
+        elif not self._map.has_clean:
+            tip = self.tr("No tries are known of these pours; imagine again")
+        can_show = self._map.has_clean and self._compare.other is None
+        if can_show != self._can_show_clean:
+            self._can_show_clean = can_show
+            self._measure.choose(_CLEAN if can_show else _INSIDE)
+        self._measure.set_available(_CLEAN, can_show, tip)
 
     def select(self, i: int, j: int) -> None:
         """Show one pour on the map, in 3D and in words."""
@@ -218,6 +232,7 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
             self._map.set_comparison(None)
         else:
             self._map.set_comparison(other.ratios_for(grid), other.label)
+        self._offer_measures()
 
     def _load_other(self, folder: Path) -> None:
         self.desk.background.run(
@@ -234,6 +249,8 @@ def cells_of(pours: ShownPours) -> list[MappedPour]:
     if grid is None:
         return []
     p, spread, has_spread = grid.p, grid.p_spread, grid.n_in.shape[2] > 1
+    risk = pours.risk
+    clean = None if risk is None else risk.clean_at_least
     cells = []
     for i, theta_rad in enumerate(grid.theta_rad):
         for j, indent_m in enumerate(grid.indent_m):
@@ -248,149 +265,8 @@ def cells_of(pours: ShownPours) -> list[MappedPour]:
                     float(spread[i, j]) if has_spread else None,
                     None if found is None else found.is_feasible,
                     "" if found is None else found.reason,
+                    None if clean is None else float(clean[i, j]),
+                    0 if risk is None else int(risk.n_tries[i, j]),
                 )
             )
     return cells
-
-
-class PourScene(QWidget):
-    """Shows one pour of a grid at a time.
-
-    Attributes:
-        scene: the 3D view.
-        timeline: of the replay.
-        picked: (i, j) of the pour whose pivot was clicked.
-        rotated: how far the map has to be rotated to lie as this view does, degrees anticlockwise.
-    """
-
-    picked = Signal(int, int)
-    rotated = Signal(float)
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.setObjectName("pour_scene")
-        self.scene = Scene3D()
-        self.scene.setObjectName("pours_3d")
-        self.scene.setAccessibleName(self.tr("The selected pour in 3D"))
-        self.timeline = Timeline()
-        self._pours: ShownPours | None = None
-        self._recording: Recording | None = None
-        self._times_s: list[float] = []
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.scene, 1)
-        self._bar = QWidget()
-        bar = QVBoxLayout(self._bar)
-        bar.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, GRID_PX)
-        bar.addWidget(self.timeline)
-        column.addWidget(self._bar)
-        self.scene.picked.connect(self._pick)
-        self.scene.azimuth_changed.connect(lambda deg: self.rotated.emit(map_rotation_deg(deg)))
-        self.timeline.time_changed.connect(self._show_moment)
-
-    @property
-    def rotation_deg(self) -> float:
-        """How far the map has to be rotated now."""
-        return map_rotation_deg(self.scene.azimuth_deg)
-
-    def show_nothing(self, text: str) -> None:
-        """Show an empty view that says why."""
-        self._pours, self._recording = None, None
-        self.scene.clear()
-        self.scene.set_empty_text(text)
-        self.timeline.set_sections(0.0)
-        self._bar.hide()
-
-    def show_pours(self, pours: ShownPours) -> None:
-        """Show the object and all pivots of a grid; `show_pour` then shows one of its pours."""
-        if self._pours is None or self._pours.folder != pours.folder:
-            self.scene.clear()
-        self._pours, self._recording = pours, None
-        self.scene.set_prepared_mesh(BODY, pours.body, opacity=1.0 if pours.grid is None else _SEE_THROUGH)
-        grid, box = pours.grid, pours.containability.aabb_m
-        for name in (CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER):
-            self.scene.remove(name)
-        self._bar.setVisible(grid is not None)
-        if grid is None:
-            self.timeline.set_sections(0.0)
-            self.scene.fit(BODY)
-            return
-        self.scene.set_prepared_mesh(CUP, pours.cup, color="ghost", opacity=0.35)
-        self.scene.set_points(PIVOTS, grid.pivot_m.reshape(-1, 3), color="muted", size_px=7)
-        self.scene.set_points(
-            AROUND, _corners(clearance_box_m(box, pours.pouring.cup.length_m)), color="scene", size_px=1
-        )
-        footprint = pours.containability.footprint
-        if footprint is not None:
-            self.scene.set_label(CENTER, footprint.center_m, self.tr("Pour centre"))
-        self.scene.fit(BODY, AROUND)
-
-    def show_pour(self, i: int, j: int) -> None:
-        """Show one pour at its end: what landed inside and what did not."""
-        pours = self._pours
-        if pours is None or pours.grid is None:
-            return
-        grid = pours.grid
-        recording = grid.recordings[i][j]
-        self._recording = None  # the time line reports its time while it is set
-        self._times_s = recording.time_s.astype(float).tolist()
-        n = recording.positions_m.shape[1]
-        self.scene.set_candies(CANDIES, n, pours.candy_radius_m, pours.landed(i, j))
-        self.scene.set_points(PIVOT, grid.pivot_m[i, j], color="accent", size_px=13)
-        self.scene.set_arrow(ARROW, *_arrow(pours, grid, i), color="accent")
-        duration_s = self._times_s[-1] if self._times_s else 0.0
-        self.timeline.set_sections(duration_s, self._sections(pours, duration_s))
-        self._recording = recording
-        self.timeline.set_time(duration_s)
-        self._show_moment(duration_s)
-
-    def _sections(self, pours: ShownPours, duration_s: float) -> list[Section]:
-        begin_s, end_s = pours.pouring.settle_s, pours.pouring.settle_s + pours.pouring.turn_s
-        return [
-            Section(self.tr("settle"), 0.0, begin_s),
-            Section(self.tr("pour"), begin_s, end_s),
-            Section(self.tr("wait"), end_s, max(duration_s, end_s)),
-        ]
-
-    def _show_moment(self, time_s: float) -> None:
-        recording = self._recording
-        if recording is None or not self._times_s:
-            return
-        k = max(bisect_right(self._times_s, time_s + 1e-6) - 1, 0)
-        self.scene.set_pose(CUP, recording.T_world_body[k].astype(float))
-        self.scene.set_candy_positions(CANDIES, recording.positions_m[k])
-
-    def _pick(self, name: str, index: int) -> None:
-        if name == PIVOTS and self._pours is not None and self._pours.grid is not None:
-            i, j = divmod(index, len(self._pours.grid.indent_m))
-            self.picked.emit(i, j)
-
-
-def map_rotation_deg(azimuth_deg: float) -> float:
-    """How far a map with x to the right has to be rotated to lie as seen by an eye at an azimuth."""
-    return (-90.0 - azimuth_deg + 180.0) % 360.0 - 180.0
-
-
-def clearance_box_m(box_m: FloatArray, reach_m: float) -> FloatArray:
-    """(2, 3) the object's box with clearance around it for the cup."""
-    around = 0.8 * np.array([reach_m, reach_m, 0.0])
-    return np.array([box_m[0] - around, box_m[1] + around + [0.0, 0.0, reach_m / 2]])
-
-
-def _corners(box_m: FloatArray) -> FloatArray:
-    choose = np.indices((2, 2, 2)).reshape(3, -1).T
-    return np.stack([box_m[choose[:, axis], axis] for axis in range(3)], axis=1)
-
-
-def _arrow(pours: ShownPours, grid: PourGrid, i: int) -> tuple[FloatArray, FloatArray]:
-    """The direction of the pour: on the ground, beside the object, from where the cup comes."""
-    theta = float(grid.theta_rad[i])
-    ray = np.array([np.cos(theta), np.sin(theta), 0.0])
-    box = pours.containability.aabb_m
-    foot = np.array([*grid.pivot_m.mean(axis=(0, 1))[:2], box[0, 2]])
-    half = (box[1] - box[0])[:2] / 2
-    beside_m = float(np.min(half / np.maximum(np.abs(ray[:2]), 1e-9))) + 0.02
-    end: FloatArray = foot + beside_m * ray
-    start: FloatArray = end + _ARROW_M * ray
-    return start, end

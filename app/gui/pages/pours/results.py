@@ -8,12 +8,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from app.gui.pages.photographed import in_colors
+from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
+from app.gui.views.scene.shapes import Shape
 from app.operations.choosing import current_motions
 from core.errors import SessionError
-from core.geometry import BoolArray
+from core.geometry import BoolArray, FloatArray
 from core.imagination.amount.result import Amount
-from core.imagination.rendering.shapes import cup_surface
+from core.imagination.particle_shape import particle_extents_m
+from core.imagination.recording import Recording
+from core.imagination.rendering.replay import make_replay
+from core.imagination.rendering.shapes import candy_mesh, cup_surface
 from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
 from core.mesh_file import read_ply
 from core.motion.pour.feasibility import PourFeasibility, PourMotions
@@ -24,6 +30,9 @@ from core.session.record import StageRecord
 
 if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
+
+
+_N_CASTERS = 15_000
 
 
 @dataclass(frozen=True)
@@ -41,8 +50,11 @@ class ShownPours:
         paper_choice: what the paper's rule says; none without a grid.
         amount: how many candies to pour; none if it is not known what the object holds.
         pouring: parameters that the pours were imagined with.
-        candy_radius_m: half a candy's diameter.
+        candy: what the physics took a candy for, about its centre.
+        candy_extents_m: (3,) its edge lengths.
+        ground_m: height of what the object stands on.
         body: the object.
+        casters_m: (n, 3) points all over it, for its shadow.
         cup: in its own frame.
         is_in_cell: false for an imported mesh, which no arm can reach.
         motions: which ones the cell's arm can make; none if that is not known.
@@ -60,8 +72,11 @@ class ShownPours:
     paper_choice: PourChoice | None
     amount: Amount | None
     pouring: PouringParameters
-    candy_radius_m: float
+    candy: Shape
+    candy_extents_m: FloatArray
+    ground_m: float
     body: PreparedMesh
+    casters_m: FloatArray
     cup: PreparedMesh
     is_in_cell: bool
     motions: PourMotions | None = None
@@ -107,6 +122,12 @@ class ShownPours:
                 return np.asarray(final[:, 2] >= box[0, 2], dtype=bool)
             return np.asarray(((final > box[0]) & (final < box[1])).all(axis=1), dtype=bool)
 
+    def replay(self, i: int, j: int) -> Recording:
+        """Return a pour's recording, in which what was spilled lies on the ground."""
+        assert self.grid is not None, "only asked of a pour"
+        recording = self.grid.recordings[i][j]
+        return make_replay(recording, self.landed(i, j), self.ground_m, self.candy_extents_m).recording
+
 
 @dataclass(frozen=True, eq=False)
 class PoursKey:
@@ -151,7 +172,7 @@ def _imagined(view: SessionView, record: StageRecord, tries: StageRecord | None)
         raise SessionError(f"The session {view.session.path} holds no verdict; imagine first.")
     parameters = view.parameters_of("pouring")
     surface = read_ply(view.session.folder(view.source) / "mesh.ply")
-    cup = cup_surface(parameters.pouring.cup)
+    cup, candy = cup_surface(parameters.pouring.cup), candy_mesh(parameters.particle)
     return ShownPours(
         folder=view.session.path,
         record=record,
@@ -163,8 +184,11 @@ def _imagined(view: SessionView, record: StageRecord, tries: StageRecord | None)
         paper_choice=view.paper_choice,
         amount=view.amount,
         pouring=parameters.pouring,
-        candy_radius_m=parameters.particle.diameter_m / 2,
-        body=prepare_mesh(surface.vertices_m, surface.faces),
+        candy=(candy.vertices_m, candy.faces),
+        candy_extents_m=particle_extents_m(parameters.particle),
+        ground_m=float(surface.aabb_min_m[2]),
+        body=in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view),
+        casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
         cup=prepare_mesh(cup.vertices_m, cup.faces),
         is_in_cell=view.source != "mesh",
     )

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from app.gui.pages.photographed import in_colors
 from app.gui.views.scene import ColorScale, PreparedMesh, prepare_mesh
 from core.geometry import FloatArray
 from core.mesh import TriangleMesh
@@ -35,6 +36,7 @@ class ModelKey:
     surface: str
     quality: str
     collision: str
+    colors: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +65,7 @@ class ShownModel:
     Attributes:
         digest: of its stage's files.
         mesh: the surface.
-        body: the same, ready to be drawn.
+        body: the same, ready to be drawn; in its photographed colours where they are known.
         centers_m: (F, 3) of its faces.
         is_closed: whether it encloses a volume.
         reconstruction: none for an imported mesh.
@@ -102,11 +104,12 @@ def key_of(view: SessionView) -> ModelKey:
     """Look up the stages' digests."""
     records = {
         stage: view.finished.get(stage)
-        for stage in ("scan", "mesh", "reconstruction", "quality", "collision")
+        for stage in ("scan", "mesh", "reconstruction", "quality", "collision", "colors")
     }
     digests = {stage: "" if record is None else record.digest for stage, record in records.items()}
     surface = digests["mesh"] or digests["reconstruction"]
-    return ModelKey(view.session.path, digests["scan"], surface, digests["quality"], digests["collision"])
+    parts = (digests[stage] for stage in ("quality", "collision", "colors"))
+    return ModelKey(view.session.path, digests["scan"], surface, *parts)
 
 
 def load_model(key: ModelKey) -> Loaded:
@@ -136,7 +139,7 @@ def _model(session: Session, key: ModelKey, is_mesh: bool) -> ShownModel:
     return ShownModel(
         digest=key.surface,
         mesh=mesh,
-        body=prepare_mesh(mesh.vertices_m, mesh.faces),
+        body=in_colors(prepare_mesh(mesh.vertices_m, mesh.faces, is_shaded=True), mesh, SessionView(session)),
         centers_m=_centers_m(mesh),
         is_closed=topology(mesh).is_closed,
         reconstruction=reconstruction,

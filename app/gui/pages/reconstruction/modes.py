@@ -16,6 +16,8 @@ if TYPE_CHECKING:  # it brings the fusion along
 
 translate = QCoreApplication.translate
 
+PHOTO = "photo"
+"""The mode that shows the surface as the camera saw it."""
 LEAST_SCALE_MM = 0.5
 """Of a difference; less is noise and should not look like much."""
 _SHOWN_SHARE = 98.0
@@ -37,7 +39,13 @@ def mode_tips(model: ShownModel | None, has_difference: bool) -> dict[str, tuple
     difference = translate("ModelModes", "Change a parameter and reconstruct to compare the results here")
     if has_difference:
         difference = translate("ModelModes", "How far the surface moved since the last result")
+    photo = translate("ModelModes", "The surface in the colours of the scan's images")
+    if model is not None and model.reconstruction is None:
+        photo = translate("ModelModes", "An imported mesh has no images")
+    elif model is not None and model.body.rgb is None:
+        photo = translate("ModelModes", "The model was made without colours; reconstruct")
     return {
+        PHOTO: (model is not None and model.body.rgb is not None, photo),
         "coverage": (has_views, coverage),
         "collision": (has_parts, collision),
         "difference": (has_difference, difference),
@@ -49,8 +57,8 @@ def mode_colors(
 ) -> tuple[FloatArray, ColorScale] | None:
     """Return a number (V,) for each vertex, NaN where there is none, and its colours; none if plain."""
     if mode == "height":
-        above_mm = (model.mesh.vertices_m[:, 2] - _ground_m(model)) * MM
-        top_mm = float(model.mesh.aabb_max_m[2] - _ground_m(model)) * MM
+        above_mm = (model.mesh.vertices_m[:, 2] - ground_m(model)) * MM
+        top_mm = float(model.mesh.aabb_max_m[2] - ground_m(model)) * MM
         return above_mm, ColorScale(translate("ModelModes", "Height"), "mm", 0.0, top_mm)
     if mode == "coverage" and model.quality is not None:
         n_views = model.quality.n_views.astype(float)
@@ -127,8 +135,8 @@ def _collision_caption(model: ShownModel) -> str:
     )
 
 
-def _ground_m(model: ShownModel) -> float:
-    """What heights are counted from: the platform, or the lowest point of an imported mesh."""
+def ground_m(model: ShownModel) -> float:
+    """Return what heights are counted from: the platform, or the lowest point of an imported mesh."""
     if model.reconstruction is None:
         return float(model.mesh.aabb_min_m[2])
     return model.reconstruction.platform_height_m

@@ -13,6 +13,7 @@ from app.gui.desk.desk import Desk
 from app.gui.pages.background_page import BackgroundPage
 from app.gui.pages.page import SplitView
 from app.gui.pages.reconstruction.loading import Loaded, ModelKey, ShownModel, key_of, load_model
+from app.gui.pages.reconstruction.modes import PHOTO
 from app.gui.pages.reconstruction.side import STAGES, ModelSide
 from app.gui.pages.reconstruction.view import ModelView
 from app.jobs.session_work import SessionWork
@@ -103,7 +104,7 @@ class ReconstructionPage(BackgroundPage[ModelKey, Loaded]):
             return
         self._difference_m = difference_m
         self._show()
-        if self.view.modes.mode == "shape":
+        if self.view.modes.mode in ("shape", PHOTO):
             self.view.modes.choose("difference")
 
     def _show(self) -> None:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:  # they bring the fusion along
 STAGES = ("reconstruction", "quality", "collision")
 _GROUPS = groups_of("reconstruction", "collision")
 _ML = 1e6
-_TABLE_ROWS = 7
 
 
 class ModelSide(SidePanel):
@@ -58,10 +57,8 @@ class ModelSide(SidePanel):
         self.parameters = FoldedParameters(desk, _GROUPS)
         self.parameters.opened.connect(lambda: QTimer.singleShot(0, self._scroll_to_parameters))
         above_table = (self._verdict, self._reasons, self._failed, self._to_scan, self.stale, self.facts)
-        for widget in (*above_table, self._health_head, self._health):
+        for widget in (*above_table, self.parameters, self._health_head, self._health, self.table):
             self.body.addWidget(widget)
-        self.body.addWidget(self.table, 3)
-        self.body.addWidget(self.parameters)
         self.body.addStretch(1)
         self._failed.hide()
 
@@ -80,8 +77,7 @@ class ModelSide(SidePanel):
         )
         table.setObjectName("health_table")
         table.setAccessibleName(self.tr("Pose health"))
-        height = table.horizontalHeader().sizeHint().height()
-        table.setMinimumHeight(height + _TABLE_ROWS * table.verticalHeader().defaultSectionSize())
+        table.grow_with_rows()
         return table
 
     def show_empty(self, sentence: str, button: str) -> None:
@@ -115,6 +111,7 @@ class ModelSide(SidePanel):
         self._health.setText("" if made is None else self._agreement(made))
         self._health.setToolTip(model.health)
         self.table.set_rows(_rows(model))
+        self.table.setVisible(bool(self.table.rows))
 
     def _verdict_texts(self, model: ShownModel) -> tuple[str, str]:
         if model.reconstruction is None:

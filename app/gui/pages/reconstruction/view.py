@@ -20,7 +20,7 @@ from typing_extensions import override
 from app.gui.pages.layouts import lay_around
 from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.reconstruction.loading import MM, ShownModel
-from app.gui.pages.reconstruction.modes import caption, mode_colors, mode_tips
+from app.gui.pages.reconstruction.modes import PHOTO, caption, ground_m, mode_colors, mode_tips
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.labels import text_label
 from app.gui.views.painting import tabular
@@ -34,6 +34,8 @@ _RULER_LAYERS = ("ruler_points", "ruler_line", "ruler_label")
 _UNSEEN = "attention"
 """Colour of what no view saw."""
 _FAINT = 0.35
+_GROUND_SIZES = 1.6
+"""Half the ground's side, as a share of the object's diagonal."""
 
 
 class ModelView(QWidget):
@@ -69,6 +71,7 @@ class ModelView(QWidget):
 
     def _add_modes(self) -> None:
         self.modes.add("shape", self.tr("Shape"), self.tr("The surface as it is"))
+        self.modes.add(PHOTO, self.tr("Photo"), "")
         self.modes.add("height", self.tr("Height"), self.tr("Height above the platform in mm"))
         self.modes.add("coverage", self.tr("Coverage"), "")
         self.modes.add("collision", self.tr("Collision"), "")
@@ -121,9 +124,12 @@ class ModelView(QWidget):
     def show_model(self, model: ShownModel | None, difference_m: FloatArray | None = None) -> None:
         """Show a model and how far it lies off the last one (V,), if that is known; none: nothing."""
         is_first = self._model is None
+        was_photographed = self._model is not None and self._model.body.rgb is not None
         self._model, self._difference_m = model, difference_m
         self._offer_modes()
-        for layer in ("object", "hidden", "collision"):
+        if model is not None and model.body.rgb is not None and not was_photographed:
+            self.modes.choose(PHOTO)
+        for layer in ("object", "hidden", "collision", "ground"):
             self.scene.remove(layer)
         places = {} if model is None else {"object": model.centers_m}
         if model is not None and model.quality is not None:
@@ -135,6 +141,8 @@ class ModelView(QWidget):
         if model is None:
             self._ruler_button.setChecked(False)
         self._draw()
+        if model is not None:
+            self._draw_ground(model)
         if is_first:
             self.scene.fit("object")
 
@@ -189,13 +197,21 @@ class ModelView(QWidget):
     def _draw_object(self, model: ShownModel, mode: str) -> ColorScale | None:
         colors = mode_colors(model, mode, self._difference_m)
         if colors is None:
+            body = model.body if mode == PHOTO else replace(model.body, rgb=None)
             is_behind = mode == "collision" and model.collision is not None and model.collision.n_parts > 1
-            self.scene.set_prepared_mesh("object", model.body, opacity=_FAINT if is_behind else 1.0)
+            self.scene.set_prepared_mesh("object", body, opacity=_FAINT if is_behind else 1.0)
             return None
         values, scale = colors
         body = replace(model.body, values=values.astype(np.float32), scale=scale)
         self.scene.set_prepared_mesh("object", body, color=_UNSEEN)
         return scale
+
+    def _draw_ground(self, model: ShownModel) -> None:
+        """The platform under it; an imported mesh stands on its lowest point."""
+        low, high = model.mesh.aabb_min_m, model.mesh.aabb_max_m
+        height_m = min(ground_m(model), float(low[2]))
+        half_m = _GROUND_SIZES * float(np.linalg.norm(high - low))
+        self.scene.set_ground("ground", [*(low + high)[:2] / 2, height_m], [half_m] * 2, model.centers_m)
 
     def _draw_hidden(self, model: ShownModel, mode: str) -> None:
         """The inside of openings that no view saw."""

@@ -19,7 +19,6 @@ from core.session.pour_runs import Outcome, PourRun
 
 _BIG_PX = 7 * GRID_PX
 _NUMBER_POINTS, _SIGN_POINTS = 30, 20
-_MOST_SHOWN = 6
 _MINUS, _EN_DASH = "\N{MINUS SIGN}", "\N{EN DASH}"
 
 
@@ -165,7 +164,7 @@ class RunsPart(Panel):
         )
         self.table.setObjectName("runs_table")
         self.table.setAccessibleName(self.tr("Pours of this session"))
-        self.table.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.table.grow_with_rows()
         self.table.row_selected.connect(self._choose)
         self.column.addWidget(self.table)
 
@@ -174,11 +173,6 @@ class RunsPart(Panel):
         self._runs = tuple(reversed(runs))
         self.setVisible(bool(runs))
         self.table.set_rows([self._row(run) for run in self._runs])
-        rows = min(len(self._runs), _MOST_SHOWN)
-        line = self.table.verticalHeader().defaultSectionSize()
-        self.table.setFixedHeight(
-            self.table.horizontalHeader().sizeHint().height() + rows * line + GRID_PX // 2
-        )
 
     def select(self, run: object) -> None:
         """Mark the run whose outcome is asked for; none: none of them."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from app.gui.pages.cell_model import CellModel, cell_model
+from app.gui.pages.photographed import in_colors
 from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
 from app.gui.views.scene.shapes import box_mesh
 from core.geometry import FloatArray
@@ -80,7 +81,8 @@ def load_object(folder: Path) -> PreparedMesh | None:
     if not path.is_file():
         return None
     mesh = read_ply(path)
-    return prepare_mesh(mesh.vertices_m, mesh.faces)
+    body = prepare_mesh(mesh.vertices_m, mesh.faces, is_shaded=True)
+    return in_colors(body, mesh, SessionView.of(folder))
 
 
 def load_session_pours(folder: Path) -> SessionPours:

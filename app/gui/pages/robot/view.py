@@ -5,21 +5,30 @@ from __future__ import annotations
 import time
 
 import numpy as np
-from PySide6.QtWidgets import QLabel, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QHBoxLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.gui.pages.layouts import lay_around
 from app.gui.pages.robot.loading import RobotCell
 from app.gui.pages.robot.motion import ShownMotion, move_text
 from app.gui.theme import GRID_PX
 from app.gui.views.scene import PreparedMesh, Scene3D
+from app.gui.views.scene.arm import ArmLooks
 from app.gui.views.timeline import Section, Timeline
 from core.geometry import FloatArray, make_pose
 from core.motion.kinematics import flange_pose
 
 AHEAD_S = 1.0
 """So far the ghost is ahead of the moving arm, in seconds of the plan."""
-_CUP_OPACITY, _GHOST_CUP_OPACITY, _PLATFORM_OPACITY = 0.55, 0.3, 0.6
-_GHOST_ARM = "planned arm"
+_CUP_OPACITY, _GHOST_CUP_OPACITY = 0.55, 0.3
+_GHOST_ARM, _COLLISION = "planned arm", "collision shape"
 _MOST_OFTEN_S = 0.09
 _SAME_RAD = 5e-4
 _APART_RAD = 0.01
@@ -38,6 +47,7 @@ class ArmView(QWidget):
         super().__init__()
         self.setObjectName("arm_view")
         self._cell: RobotCell | None = None
+        self._object: PreparedMesh | None = None
         self._motion: ShownMotion | None = None
         self._joints_rad: FloatArray | None = None
         self._holds_cup: bool | None = False
@@ -57,6 +67,13 @@ class ArmView(QWidget):
         self._hint = QLabel(self.tr("The planned motion can be inspected here before anything moves."))
         self._hint.setProperty("role", "muted")
         self._strip = QStackedWidget()
+        self._collision = QPushButton(self.tr("Collision shape"))
+        self._collision.setObjectName("collision_shape")
+        self._collision.setCheckable(True)
+        self._collision.setToolTip(
+            self.tr("Show around the arm the shape that is kept clear of table, object and arm")
+        )
+        self._collision.toggled.connect(self._show_collision_shape)
         self._build()
 
     def _build(self) -> None:
@@ -69,9 +86,10 @@ class ArmView(QWidget):
         bottom.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
         bottom.addWidget(self._now)
         bottom.addWidget(self._strip)
-        top = QVBoxLayout()
+        top = QHBoxLayout()
         top.setContentsMargins(2 * GRID_PX, GRID_PX, GRID_PX, GRID_PX)
-        top.addWidget(self._caption)
+        top.addWidget(self._caption, 1)
+        top.addWidget(self._collision)
         lay_around(self, top, self.scene, bottom)
         self._show_caption()
 
@@ -79,13 +97,14 @@ class ArmView(QWidget):
         """Show another cell, with its arm at home until something else is known."""
         self._cell = cell
         scene = self.scene
-        cell.model.draw_furniture(scene, "line", "raised", _PLATFORM_OPACITY)
+        cell.model.draw_furniture(scene)
+        self._draw_platform_top()
         scene.set_label("station", cell.station_m, self.tr("cup station"))
         scene.set_points("corners", cell.corners_m, color="scene", size_px=1)  # unseen; kept in view
         scene.set_prepared_mesh("cup", cell.cup, color="kept", opacity=_CUP_OPACITY)
         scene.set_prepared_mesh("planned cup", cell.cup, color="ghost", opacity=_GHOST_CUP_OPACITY)
         model = cell.model
-        scene.set_arm(_GHOST_ARM, model.arm, model.home_rad, tools=model.tools, is_ghost=True)
+        scene.set_arm(_GHOST_ARM, model.arm, model.home_rad, tools=model.tools, looks="ghost")
         self._set_arm(is_connected=self._joints_rad is not None)
         self._place_cup()
         self._show_time(self.timeline.time_s)
@@ -93,10 +112,17 @@ class ArmView(QWidget):
 
     def show_object(self, mesh: PreparedMesh | None) -> None:
         """Show another object; none: none."""
+        self._object = mesh
         if mesh is None:
             self.scene.remove("object")
         else:
             self.scene.set_prepared_mesh("object", mesh)
+        self._draw_platform_top()
+
+    def _draw_platform_top(self) -> None:
+        if self._cell is not None:
+            casters_m = np.empty((0, 3)) if self._object is None else self._object.vertices_m
+            self._cell.model.draw_platform_top(self.scene, casters_m)
 
     def show_arm(self, joints_rad: FloatArray | None, holds_cup: bool | None) -> None:
         """Show where the arm is now.
@@ -165,6 +191,8 @@ class ArmView(QWidget):
             return
         self._drawn = joints_rad, self._holds_cup
         self.scene.set_joints("arm", joints_rad)
+        if self._collision.isChecked():
+            self.scene.set_joints(_COLLISION, joints_rad)
         self._place_cup()
 
     def _set_arm(self, is_connected: bool) -> None:
@@ -172,8 +200,19 @@ class ArmView(QWidget):
         assert self._cell is not None, "called when there is a cell"
         model = self._cell.model
         joints_rad = model.home_rad if self._joints_rad is None else self._joints_rad
-        self.scene.set_arm("arm", model.arm, joints_rad, tools=model.tools, is_ghost=not is_connected)
+        looks: ArmLooks = "solid" if is_connected else "ghost"
+        self.scene.set_arm("arm", model.arm, joints_rad, tools=model.tools, looks=looks)
+        self._show_collision_shape()
         self._drawn = None
+
+    def _show_collision_shape(self) -> None:
+        """Draw what motions are checked with around the arm, or take it away."""
+        if self._cell is None or not self._collision.isChecked():
+            self.scene.remove(_COLLISION)
+            return
+        model = self._cell.model
+        joints_rad = model.home_rad if self._joints_rad is None else self._joints_rad
+        self.scene.set_arm(_COLLISION, model.arm, joints_rad, tools=model.tools, looks="collision")
 
     def _place_cup(self) -> None:
         """In the hand or at its station; away if nobody knows where it is."""

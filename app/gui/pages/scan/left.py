@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
@@ -20,7 +21,8 @@ from app.gui.views.thumbnails import ThumbnailGrid
 from app.jobs.scan_events import ViewProgress
 
 _ARM, _BOX, _OBJECT, _REACH, _TABLE, _VIEWS = "arm", "box", "object", "reach", "table", "views"
-_PLATFORM_OPACITY = 0.35
+_GROUND_SIZES = 1.6
+"""Half the side of an imported mesh's ground, as a share of the mesh's diagonal."""
 _VERDICT_PX = 10 * GRID_PX
 """Kept whatever is said: if it changed, the 3D view would jump, and be drawn anew."""
 _MOST_REASONS = 3
@@ -126,6 +128,7 @@ class ScanView(QWidget):
         self._cell: ScanCell | None = None
         self._placed: list[int] = []
         self._is_alone = False
+        self._casters_m: npt.NDArray[np.float32] = np.empty((0, 3), dtype=np.float32)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.scene)
@@ -143,6 +146,10 @@ class ScanView(QWidget):
                 self.scene.clear()
             self._is_alone = True
             self.scene.set_prepared_mesh(_OBJECT, mesh)
+            low, high = mesh.vertices_m.min(axis=0), mesh.vertices_m.max(axis=0)
+            half_m = _GROUND_SIZES * float(np.linalg.norm(high - low))
+            middle = [*(low + high)[:2] / 2, low[2]]
+            self.scene.set_ground("ground", middle, [half_m] * 2, mesh.vertices_m)
             self.scene.fit()
         elif self._is_alone:
             self._is_alone = False
@@ -154,8 +161,12 @@ class ScanView(QWidget):
         """Show what the views saw."""
         if mesh is None or len(mesh.faces) == 0:
             self.scene.remove(_OBJECT)
+            self._casters_m = self._casters_m[:0]
         else:
             self.scene.set_prepared_mesh(_OBJECT, mesh, color="body")
+            self._casters_m = mesh.vertices_m
+        if self._cell is not None and not self._is_alone:
+            self._cell.model.draw_platform_top(self.scene, self._casters_m)
 
     def show_views(self, views: Sequence[ViewProgress], selected: int | None) -> None:
         """Show where the views are taken from; those whose place is not known are left out."""
@@ -177,7 +188,8 @@ class ScanView(QWidget):
         scene, model = self.scene, cell.model
         scene.remove(_ARM)
         scene.remove(_REACH)
-        model.draw_furniture(scene, "raised", "accent", _PLATFORM_OPACITY)
+        model.draw_furniture(scene)
+        model.draw_platform_top(scene, self._casters_m)
         scene.set_box(_BOX, cell.box_min_m, cell.box_max_m)
         if cell.has_arm:
             scene.set_arm(_ARM, model.arm, model.home_rad, tools=model.tools)

@@ -1,4 +1,4 @@
-"""Layers from what pages have: meshes, lines, points, arms, candies, boxes and camera views."""
+"""Layers from what pages have: meshes, lines, points, arms, boxes and camera views."""
 
 from __future__ import annotations
 
@@ -17,28 +17,15 @@ from app.gui.views.scene.parts import (
     Part,
     PreparedMesh,
     prepare_mesh,
-    vertex_normals,
 )
 from app.gui.views.scene.picking import BallTarget, FaceTarget
 from app.gui.views.scene.shapes import (
     Shape,
     arrow_mesh,
-    ball,
     box_edges,
-    capsule_mesh,
-    merged,
-    octahedron,
 )
-from core.geometry import BoolArray, FloatArray, transform_points
-from core.motion.arm_models import FLANGE_LINK, ArmModel, Capsule, arm_shape
-from core.motion.kinematics import link_poses
+from core.geometry import FloatArray, transform_points
 
-_GHOST_OPACITY = 0.38
-_GHOST_THICKER_M = 0.0015
-"""Where both arms are at one place the ghost lies around the other, instead of flickering in it."""
-_LOST_SIZE = 1.25
-"""An octahedron looks smaller than the ball around it."""
-_SHAPES = {True: ball, False: octahedron}
 _HANDLE_PX = 11
 _HANDLE_REACH_PX = 11
 _THINNEST_M = 0.005
@@ -57,7 +44,9 @@ _FRUSTUM_BAR = np.array([[1, 3]])
 
 def mesh_layer(mesh: PreparedMesh, color: str, opacity: float) -> Layer:
     """A mesh as a surface, or as a wire frame."""
-    paint = Paint((color,), values=mesh.values, scale=mesh.scale, opacity=opacity)
+    paint = Paint(
+        (color,), values=mesh.values, scale=mesh.scale, opacity=opacity, light=mesh.light, rgb=mesh.rgb
+    )
     if mesh.edges is None:
         part = Part("surface", mesh.vertices_m, paint, mesh.normals, mesh.faces.ravel())
     else:
@@ -97,73 +86,6 @@ def _points(points_m: npt.ArrayLike) -> Float32Array:
 def _surface_part(shape: Shape, paint: Paint) -> Part:
     mesh = prepare_mesh(*shape)
     return Part("surface", mesh.vertices_m, paint, mesh.normals, mesh.faces.ravel())
-
-
-class Arm:
-    """A layer that shows an arm with its tools; a ghost is see-through and of another colour.
-
-    Attributes:
-        layer: to be drawn.
-    """
-
-    def __init__(self, model: ArmModel, tools: Sequence[Capsule], is_ghost: bool) -> None:
-        self._model = model
-        capsules = arm_shape(model, tools).capsules
-        paint = Paint(("ghost",), opacity=_GHOST_OPACITY) if is_ghost else Paint(("arm",))
-        self._links = [link for link in range(FLANGE_LINK + 1) if any(c.link == link for c in capsules)]
-        thicker_m = _GHOST_THICKER_M if is_ghost else 0.0
-        parts = [_link([c for c in capsules if c.link == link], thicker_m, paint) for link in self._links]
-        self.layer = Layer(tuple(parts))
-
-    def move(self, joints_rad: npt.ArrayLike) -> None:
-        """Bend the arm to joint angles (6,)."""
-        poses = link_poses(self._model, np.asarray(joints_rad, dtype=float))
-        for link, part in zip(self._links, self.layer.parts, strict=True):
-            part.T_layer_part = poses[link]
-
-
-def _link(capsules: Sequence[Capsule], thicker_m: float, paint: Paint) -> Part:
-    """All capsules of one link as one surface, thicker than they are."""
-    shapes = [capsule_mesh(c.start_m, c.end_m, c.radius_m + thicker_m) for c in capsules]
-    return _surface_part(merged(shapes), paint)
-
-
-class Candies:
-    """A layer of candies: kept ones are balls, lost ones octahedra of another colour.
-
-    Attributes:
-        layer: to be drawn.
-    """
-
-    def __init__(self, n: int, radius_m: float, kept: BoolArray | None) -> None:
-        is_kept = np.ones(n, dtype=bool) if kept is None else np.asarray(kept, dtype=bool)
-        shapes = [_SHAPES[bool(one)]() for one in is_kept]
-        counts = np.array([len(vertices) for vertices, _ in shapes], dtype=np.intp)
-        vertices, faces = merged(shapes)
-        sizes = np.where(is_kept, radius_m, _LOST_SIZE * radius_m)
-        self._candy_of_vertex = np.repeat(np.arange(n), counts)
-        self._offsets = (vertices * sizes[self._candy_of_vertex, None]).astype(np.float32)
-        indices = faces.astype(np.uint32)
-        self._target = BallTarget(np.full((n, 3), np.nan), radius_m)
-        part = Part(
-            "surface",
-            np.full_like(self._offsets, np.nan),
-            Paint(("kept", "lost"), which=np.repeat(~is_kept, counts).astype(np.uint8)),
-            normals=vertex_normals(self._offsets, indices),
-            indices=indices.ravel(),
-        )
-        self.layer = Layer((part,), self._target)
-
-    def move(self, positions_m: npt.ArrayLike) -> None:
-        """Put the candies to positions (n, 3); NaN ones are not shown."""
-        positions = np.asarray(positions_m, dtype=float)
-        self._target.centers_m = positions
-        self.layer.parts[0].move_vertices(self._vertices(positions.astype(np.float32)))
-
-    def _vertices(self, positions_m: Float32Array) -> Float32Array:
-        vertices: Float32Array = positions_m[self._candy_of_vertex]
-        vertices += self._offsets
-        return vertices
 
 
 class CropBox:

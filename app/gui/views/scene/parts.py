@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from app.gui.views.color_scale import TURBO, VIRIDIS, color_table
+from app.gui.views.scene.occlusion import ambient_light
 from app.gui.views.scene.picking import Target
 from core.geometry import AnyArray, FloatArray, transform_points
 
@@ -73,6 +74,8 @@ class PreparedMesh:
         edges: (E, 2) of vertex indices when it is a wire frame, otherwise None.
         values: (N,) the quantity that is coloured; NaN where it is unknown.
         scale: the colours of the values.
+        light: (N,) share of the light from around that reaches each vertex; None: all of it.
+        rgb: (N, 3) colour of each vertex, 0 to 1, instead of the one it is drawn in; None: it has none.
     """
 
     vertices_m: Float32Array
@@ -81,6 +84,8 @@ class PreparedMesh:
     edges: UInt32Array | None = None
     values: Float32Array | None = None
     scale: ColorScale | None = None
+    light: Float32Array | None = None
+    rgb: Float32Array | None = None
 
 
 def prepare_mesh(
@@ -90,8 +95,9 @@ def prepare_mesh(
     values: npt.ArrayLike | None = None,
     scale: ColorScale | None = None,
     is_wireframe: bool = False,
+    is_shaded: bool = False,
 ) -> PreparedMesh:
-    """Do what takes time before a mesh can be drawn: 200,000 faces take some 40 ms.
+    """Do what takes time before a mesh can be drawn: 200,000 faces take some 40 ms, shaded half a second.
 
     Args:
         vertices_m: (N, 3).
@@ -99,6 +105,7 @@ def prepare_mesh(
         values: (N,) a number per vertex, shown by `scale`; NaN where nothing is known.
         scale: the colours of the values.
         is_wireframe: whether only its edges are to be drawn.
+        is_shaded: whether its hollows are to be darker; not for the window's thread.
     """
     points = np.ascontiguousarray(vertices_m, dtype=np.float32).reshape(-1, 3)
     triangles = np.ascontiguousarray(faces, dtype=np.uint32).reshape(-1, 3)
@@ -109,6 +116,7 @@ def prepare_mesh(
         edges=_edges(triangles) if is_wireframe else None,
         values=None if values is None else np.asarray(values, dtype=np.float32),
         scale=scale,
+        light=ambient_light(points, triangles) if is_shaded else None,
     )
 
 
@@ -149,11 +157,13 @@ class Paint:
     """How a part gets its colours; names are fields of `Theme`, so that it follows a change of theme.
 
     Attributes:
-        names: of colours; of everything if there is no `which`.
-        which: (N,) index of each vertex's name.
+        names: of colours, or `#rrggbb` of what has a colour of its own; of everything if there is no `which`.
+        which: (N,) index of each vertex's, or instance's, name.
         values: (N,) what a scale colours instead; where it is NaN the first name is used.
         scale: of the values.
         opacity: 0 to 1.
+        light: (N,) share of the colour that is seen; None: all of it.
+        rgb: (N, 3) what the vertices have for their own, 0 to 1; values come before it.
     """
 
     names: tuple[str, ...]
@@ -161,6 +171,8 @@ class Paint:
     values: Float32Array | None = None
     scale: ColorScale | None = None
     opacity: float = 1.0
+    light: Float32Array | None = None
+    rgb: Float32Array | None = None
 
     def colors(self, theme: Theme) -> ColorArray:
         """Colours, (4,) of all vertices or (N, 4) of each."""
@@ -168,10 +180,16 @@ class Paint:
         if self.values is not None and self.scale is not None:
             by_value = self.scale.colors(self.values)
             colors = np.where(by_value[:, 3:] > 0, by_value, palette[0])
+        elif self.rgb is not None:
+            colors = np.column_stack([self.rgb, np.ones(len(self.rgb), dtype=np.float32)])
         else:
             colors = palette[0] if self.which is None else palette[self.which]
+        if self.light is not None:
+            colors = np.broadcast_to(colors, (len(self.light), 4))
         colors = np.array(colors, dtype=np.float32)
         colors[..., 3] *= self.opacity
+        if self.light is not None:
+            colors[:, :3] *= self.light[:, None]
         return colors
 
 
@@ -180,23 +198,31 @@ class Part:
     """Something that is drawn at once.
 
     Attributes:
-        kind: `surface` of triangles, `lines` of segments, `points`.
+        kind: `surface` of triangles, `ground`, `lines` of segments, `points`.
         vertices_m: (N, 3) in the part's own frame.
         paint: its colours.
         normals: (N, 3) of a surface.
         indices: (M,) of the vertices: three for each triangle, two for each segment; None: in their order.
+        poses: (K, 7) position in m and unit quaternion (x, y, z, w) of each instance of an indexed, closed
+            surface whose faces are counter-clockwise from outside; zeros for an absent one. None: it is
+            drawn once, where it is.
         size_px: width of lines, size of points.
+        gloss: how much a surface shines, 0 to 1.
+        is_rim: whether only the faces that turn away are drawn, unlit: a rim around what is in it.
         is_on_top: whether nothing hides it.
         T_layer_part: (4, 4) pose in its layer.
         revision: counts changes of the vertices.
     """
 
-    kind: Literal["surface", "lines", "points"]
+    kind: Literal["surface", "ground", "lines", "points"]
     vertices_m: Float32Array
     paint: Paint
     normals: Float32Array | None = None
     indices: UInt32Array | None = None
+    poses: Float32Array | None = None
     size_px: float = 1.0
+    gloss: float = 0.0
+    is_rim: bool = False
     is_on_top: bool = False
     T_layer_part: FloatArray = field(default_factory=lambda: np.eye(4))
     revision: int = 0
@@ -206,6 +232,8 @@ class Part:
         """Vertices (K, 3), so many that the others lie within them but for little; absent ones left out."""
         if self._outline is None or self._outline[0] != self.revision:
             placed = self.vertices_m[np.isfinite(self.vertices_m).all(axis=1)].astype(float)
+            if self.poses is not None:
+                placed = _around(self.poses[self.poses[:, 3:].any(axis=1), :3], placed)
             self._outline = self.revision, _thinned(placed)
         return self._outline[1]
 
@@ -214,11 +242,17 @@ class Part:
         """How many triangles it has."""
         if self.kind != "surface":
             return 0
-        return (len(self.vertices_m) if self.indices is None else self.indices.size) // 3
+        n_each = (len(self.vertices_m) if self.indices is None else self.indices.size) // 3
+        return n_each if self.poses is None else n_each * len(self.poses)
 
     def move_vertices(self, vertices_m: Float32Array) -> None:
         """Replace all vertices (N, 3) by as many others."""
         self.vertices_m = vertices_m
+        self.revision += 1
+
+    def move_instances(self, poses: Float32Array) -> None:
+        """Replace the poses (K, 7) of all instances."""
+        self.poses = poses
         self.revision += 1
 
 
@@ -247,6 +281,12 @@ class Layer:
         ]
         points: FloatArray = np.vstack([np.empty((0, 3)), *outlines])
         return points
+
+
+def _around(places_m: Float32Array, body_m: FloatArray) -> FloatArray:
+    """Lower and upper corners (2 N, 3) of cubes that hold a body (V, 3), however turned, at each place."""
+    reach_m = float(np.linalg.norm(body_m, axis=1).max(initial=0.0))
+    return np.vstack([places_m - reach_m, places_m + reach_m]).astype(float)
 
 
 def _thinned(points_m: FloatArray) -> FloatArray:

@@ -11,10 +11,11 @@ from PySide6.QtGui import QImage, QPalette, QResizeEvent
 from PySide6.QtWidgets import QLabel, QWidget
 
 from app.gui.theme import GRID_PX, theme_of
+from app.gui.views.scene.arm import Arm, ArmLooks
+from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.canvas import make_canvas
+from app.gui.views.scene.ground import Ground
 from app.gui.views.scene.layers import (
-    Arm,
-    Candies,
     CropBox,
     Frustum,
     arrow_layer,
@@ -27,7 +28,7 @@ from app.gui.views.scene.layers import (
 from app.gui.views.scene.navigation import Navigator
 from app.gui.views.scene.overlay import ScaleLegend, ViewButtons
 from app.gui.views.scene.parts import ColorScale, Layer, PreparedMesh, prepare_mesh
-from app.gui.views.scene.shapes import box_mesh
+from app.gui.views.scene.shapes import Shape, box_mesh
 from core.geometry import BoolArray, FloatArray
 from core.motion.arm_models import ArmModel, Capsule
 
@@ -58,6 +59,7 @@ class Scene3D(QWidget):
         self._arms: dict[str, Arm] = {}
         self._candies: dict[str, Candies] = {}
         self._boxes: dict[str, CropBox] = {}
+        self._grounds: dict[str, Ground] = {}
         self._canvas = make_canvas(theme_of(self), self)
         self._navigator = Navigator(self._canvas, self._layers, self._boxes)
         self._navigator.picked.connect(self.picked)
@@ -133,18 +135,19 @@ class Scene3D(QWidget):
         joints_rad: npt.ArrayLike,
         *,
         tools: Sequence[Capsule] = (),
-        is_ghost: bool = False,
+        looks: ArmLooks = "solid",
     ) -> None:
-        """Show an arm with its tools; a ghost is see-through.
+        """Show an arm with its tools.
 
         Args:
             name: of the layer.
             model: which arm.
             joints_rad: (6,).
             tools: capsules on the flange.
-            is_ghost: whether it shows where the arm will be, not where it is.
+            looks: `solid` as it is, `ghost` see-through where it will be or is taken to be, `collision` the
+                shape that is kept clear of things.
         """
-        arm = Arm(model, tools, is_ghost)
+        arm = Arm(model, tools, looks)
         arm.move(joints_rad)
         self._put(name, arm.layer)
         self._arms[name] = arm
@@ -158,23 +161,56 @@ class Scene3D(QWidget):
         """Show camera views; `picked` has the index of the one that is clicked."""
         self._put(name, frusta_layer(frusta))
 
-    def set_candies(self, name: str, n: int, radius_m: float, kept: BoolArray | None = None) -> None:
-        """Add candies; they appear once `set_candy_positions` has placed them.
+    def set_candies(self, name: str, n: int, shape: Shape, kept: BoolArray | None = None) -> None:
+        """Add candies; they appear once `set_candy_poses` has placed them.
 
         Args:
             name: of the layer.
             n: how many.
-            radius_m: of each.
-            kept: (n,) which ones stayed; lost ones differ in shape and colour. None: all look alike.
+            shape: of each, about its centre.
+            kept: (n,) which ones stayed; lost ones are grey with a coloured rim. None: all look alike.
         """
-        candies = Candies(n, radius_m, kept)
+        candies = Candies(n, shape, kept)
         self._put(name, candies.layer)
         self._candies[name] = candies
 
-    def set_candy_positions(self, name: str, positions_m: npt.ArrayLike) -> None:
-        """Place the candies at positions (n, 3), NaN to hide one; cheap."""
-        self._candies[name].move(positions_m)
+    def set_candy_poses(self, name: str, positions_m: npt.ArrayLike, quaternions: npt.ArrayLike) -> None:
+        """Place the candies at positions (n, 3), NaN to hide one, turned by quaternions (n, 4); cheap.
+
+        Quaternions are (x, y, z, w), as in recordings, and need not be of length one.
+        """
+        candies = self._candies[name]
+        candies.move(positions_m, quaternions)
+        for ground in self._grounds.values():
+            ground.shade_candies(np.asarray(positions_m), candies.radius_m)
         self._canvas.update()
+
+    def set_ground(
+        self,
+        name: str,
+        center_m: npt.ArrayLike,
+        half_m: npt.ArrayLike,
+        casters_m: npt.ArrayLike,
+        *,
+        grid_m: float = 0.01,
+        fades: bool = True,
+        color: str | None = None,
+    ) -> None:
+        """Show a plane with a grid, from above only; it is no part of what `fit` brings into view.
+
+        Args:
+            name: of the layer.
+            center_m: (3,) a point on it, its middle.
+            half_m: (2,) half its sides along x and y.
+            casters_m: (N, 3) points of what stands on it, for its soft shadow; dense enough to fill it.
+            grid_m: between the lines; 0: none.
+            fades: whether it fades towards its rim, or ends there.
+            color: a field of `Theme`; `ground` if None.
+        """
+        casters = np.asarray(casters_m, dtype=float).reshape(-1, 3)
+        ground = Ground(center_m, half_m, casters, grid_m=grid_m, fades=fades, color=color or "ground")
+        self._put(name, ground.layer)
+        self._grounds[name] = ground
 
     def set_box(
         self, name: str, min_m: npt.ArrayLike, max_m: npt.ArrayLike, *, has_handles: bool = False
@@ -213,7 +249,7 @@ class Scene3D(QWidget):
 
     def remove(self, name: str) -> None:
         """Take a layer away; nothing happens if there is none of that name."""
-        for things in (self._layers, self._arms, self._candies, self._boxes):
+        for things in (self._layers, self._arms, self._candies, self._boxes, self._grounds):
             things.pop(name, None)
         self._canvas.drop(name)
         self._show_hint()
@@ -283,7 +319,7 @@ class Scene3D(QWidget):
         former = self._layers.get(name)
         if former is not None:
             layer.T_world_layer, layer.is_visible = former.T_world_layer, former.is_visible
-        for things in (self._arms, self._candies, self._boxes):
+        for things in (self._arms, self._candies, self._boxes, self._grounds):
             things.pop(name, None)
         self._layers[name] = layer
         self._canvas.put(name, layer)
@@ -325,6 +361,9 @@ def warm_up(parent: QWidget) -> Iterator[None]:
     yield
     scene.set_mesh("mesh", *box_mesh(*corners))
     scene.set_label("label", corners[0], "0")
+    scene.grab_image()
+    yield
+    scene.set_ground("ground", corners[0], (1.0, 1.0), corners)
     scene.grab_image()
     yield
     scene.deleteLater()

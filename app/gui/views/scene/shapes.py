@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -15,7 +14,6 @@ Shape = tuple[FloatArray, IntArray]
 
 _SIDES = 24
 _NONE = np.empty((0, 3))
-_GOLDEN = (1 + 5**0.5) / 2
 
 
 def box_mesh(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> Shape:
@@ -84,6 +82,21 @@ def capsule_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike, radius_m: float, 
     return vertices @ _axes_along(end - start).T + start, faces
 
 
+def rounded_cylinder(
+    start_m: npt.ArrayLike, end_m: npt.ArrayLike, radius_m: float, bevel_m: float, sides: int = 32
+) -> Shape:
+    """A closed cylinder between two points whose edges are rounded by a bevel, at most half its length."""
+    start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
+    length = float(np.linalg.norm(end - start))
+    bevel = min(bevel_m, length / 2, radius_m)
+    angle = np.linspace(0, np.pi / 2, 4)
+    edge = [(radius_m - bevel * (1 - float(np.sin(a))), bevel * (1 - float(np.cos(a)))) for a in angle]
+    top = [(r, length - h) for r, h in edge]
+    profile = [(0.0, length), top[0], *top, *reversed(edge), edge[0], (0.0, 0.0)]
+    vertices, faces = revolved_mesh(profile, sides)
+    return vertices @ _axes_along(end - start).T + start, faces
+
+
 def arrow_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike) -> Shape:
     """An arrow as thick as suits its length."""
     start, end = np.asarray(start_m, dtype=float), np.asarray(end_m, dtype=float)
@@ -92,30 +105,6 @@ def arrow_mesh(start_m: npt.ArrayLike, end_m: npt.ArrayLike) -> Shape:
     profile = [(0.0, length), (head, neck), (head, neck), (shaft, neck), (shaft, neck), (shaft, 0.0)]
     vertices, faces = revolved_mesh([*profile, (shaft, 0.0), (0.0, 0.0)])
     return vertices @ _axes_along(end - start).T + start, faces
-
-
-@lru_cache
-def ball() -> Shape:
-    """A unit sphere with few faces, because hundreds are drawn: an icosahedron, divided once."""
-    g = _GOLDEN
-    points = [(0, a, b) for a, b in product((-1, 1), (-g, g))]
-    corners = np.array([*points, *((b, x, a) for x, a, b in points), *((a, b, x) for x, a, b in points)])
-    gaps = np.linalg.norm(corners[:, None] - corners[None], axis=2)
-    near = np.abs(gaps - 2) < 1e-9
-    faces = [
-        (i, j, k)
-        for i, j, k in product(range(12), repeat=3)
-        if i < j < k and near[i, j] and near[j, k] and near[i, k]
-    ]
-    return _divided(corners, _outwards(corners, np.array(faces)))
-
-
-@lru_cache
-def octahedron() -> Shape:
-    """A unit octahedron; each face has its own vertices, so that it looks unlike a ball."""
-    corners = np.vstack([np.eye(3), -np.eye(3)])
-    faces = np.array([(i, j, k) for i, j, k in product((0, 3), (1, 4), (2, 5))])
-    return corners[_outwards(corners, faces)].reshape(-1, 3), np.arange(24).reshape(-1, 3)
 
 
 def merged(shapes: Sequence[Shape]) -> Shape:
@@ -145,22 +134,3 @@ def _axes_along(direction: FloatArray) -> FloatArray:
     x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
     x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
-
-
-def _outwards(corners: FloatArray, faces: IntArray) -> IntArray:
-    """Faces about the origin, turned so that they are counter-clockwise from outside."""
-    a, b, c = (corners[faces[:, k]] for k in range(3))
-    is_inwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
-    return np.where(is_inwards[:, None], faces[:, ::-1], faces)
-
-
-def _divided(corners: FloatArray, faces: IntArray) -> Shape:
-    """Each face in four, all vertices on the unit sphere."""
-    edges = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    unique, of_edge = np.unique(edges, axis=0, return_inverse=True)
-    ab, bc, ca = len(corners) + of_edge.reshape(3, -1)
-    a, b, c = faces.T
-    parts = [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
-    vertices = np.vstack([corners, corners[unique].mean(axis=1)])
-    unit = vertices / np.linalg.norm(vertices, axis=1, keepdims=True)
-    return unit, np.vstack([np.column_stack(part) for part in parts])

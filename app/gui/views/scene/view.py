@@ -14,9 +14,11 @@ from PySide6.QtWidgets import QWidget
 
 from app.gui.theme import Theme
 from app.gui.views.scene.camera import Camera, Size
-from app.gui.views.scene.items import DrawnLayer, SmoothBuffer, SurfaceProgram
+from app.gui.views.scene.items import DrawnLayer
 from app.gui.views.scene.overlay import paint_labels
 from app.gui.views.scene.parts import Layer
+from app.gui.views.scene.programs import GroundProgram, SurfaceProgram
+from app.gui.views.scene.smooth import SmoothBuffer
 from core.geometry import FloatArray
 
 _STILL_MS = 300
@@ -33,6 +35,7 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
     Attributes:
         can_draw: always.
         surface_program: the surfaces' shader in this view's context.
+        ground_program: the ground's.
     """
 
     can_draw = True
@@ -98,7 +101,7 @@ class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
 
     def initializeGL(self) -> None:
         """Compile for this context; it may be a second one, if the widget was moved to another window."""
-        self.surface_program = SurfaceProgram()
+        self.surface_program, self.ground_program = SurfaceProgram(), GroundProgram()
         self._smooth = SmoothBuffer()
         self._is_software = any(word in GL.glGetString(GL.GL_RENDERER) for word in _SOFTWARE)
         super().initializeGL()

@@ -21,7 +21,7 @@ def cells(n_directions=8):
 def pour_map(qtbot):
     widget = PourMap()
     qtbot.addWidget(widget)
-    widget.resize(360, 400)
+    widget.resize(360, 448)
     widget.set_pours(cells(), chosen=(2, 1))
     widget.show()
     return widget
@@ -121,3 +121,35 @@ def test_the_number_is_readable_at_360_px(pour_map):
             for dy in range(-6, 7)
         ]
         assert (max(luminances) + 0.05) / (min(luminances) + 0.05) > 4.5  # WCAG AA
+
+
+def tried(p=1.0, clean=(0.3, 0.8)):
+    return [
+        MappedPour(i, j, i * pi / 4, 0.01 + 0.02 * j, p, clean_at_least=clean[i % 2], n_tries=13)
+        for i in range(8)
+        for j in range(3)
+    ]
+
+
+def color_of(widget, i, j):
+    at = widget.cell_center(i, j)
+    return widget.grab().toImage().pixelColor(at.toPoint() + QPoint(0, -15)).name()
+
+
+def test_where_tries_are_known_colours_tell_how_sure_a_clean_pour_is(pour_map):
+    pour_map.set_pours(tried(), chosen=None)
+    assert pour_map.shows_clean
+    assert color_of(pour_map, 0, 2) != color_of(pour_map, 1, 2)
+    assert "clean pour: at least 80 % likely, after 13 tries" in pour_map.describe(1, 0)
+    pour_map.show_clean(False)
+    assert not pour_map.shows_clean
+    assert color_of(pour_map, 0, 2) == color_of(pour_map, 1, 2)
+
+
+def test_without_tries_and_in_a_comparison_colours_tell_p(pour_map):
+    assert not pour_map.has_clean and not pour_map.shows_clean
+    pour_map.set_pours(tried(), chosen=None)
+    pour_map.set_comparison(np.full((8, 3), 0.2), "theta fixed")
+    assert not pour_map.shows_clean
+    pour_map.set_comparison(None)
+    assert pour_map.shows_clean

@@ -5,7 +5,7 @@ import pytest
 
 from app.gui.pages.imagination.drop import Moments, key_of, load, phases_of, push_of
 from core.errors import SessionError
-from core.geometry import make_pose, rotation_x
+from core.geometry import make_pose, rotation_x, transform_points
 from core.imagination.recording import Recording
 from core.parameters import Parameters
 from core.pipeline.session_view import SessionView
@@ -52,8 +52,17 @@ def test_lost_candies_lie_on_the_ground_and_kept_ones_in_the_object(mug_drop):
     assert ((ends_m[kept] > low_m) & (ends_m[kept] < high_m)).all()
     assert np.isfinite(ends_m).all()
     lying = ends_m[~kept, 2] - mug_drop.ground_m
-    assert np.median(lying) == pytest.approx(mug_drop.candy_radius_m, abs=1e-4)
-    assert mug_drop.ground_m < low_m[2]
+    assert np.median(lying) == pytest.approx(mug_drop.candy[0][:, 2].max(), abs=1e-4)
+    diameter_m = np.ptp(mug_drop.candy[0][:, 0])
+    apart_m = np.linalg.norm(ends_m[~kept, None, :2] - ends_m[None, ~kept, :2], axis=2)
+    assert apart_m[np.triu_indices(len(apart_m), 1)].min() > 0.99 * diameter_m
+
+
+def test_the_object_stands_on_the_ground_however_it_is_tilted(mug_drop):
+    vertices_m = mug_drop.body.vertices_m.astype(float)
+    for time_s in np.linspace(0, mug_drop.moments.duration_s, 25):
+        lowest_m = transform_points(mug_drop.moments.T_world_body(time_s), vertices_m)[:, 2].min()
+        assert lowest_m == pytest.approx(mug_drop.ground_m, abs=5e-4)
 
 
 def test_the_parameters_shown_are_those_of_its_run_not_of_the_next(mug_drop):

@@ -15,7 +15,7 @@ from app.gui.pages.pours.comparison import (
     one_direction,
     scratch_session,
 )
-from app.gui.pages.pours.page import map_rotation_deg
+from app.gui.pages.pours.pour_scene import map_rotation_deg
 from app.gui.pages.pours.results import PoursKey, load_pours
 from app.operations.choosing import current_motions
 from core.errors import SessionError

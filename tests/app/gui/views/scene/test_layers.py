@@ -5,36 +5,46 @@ import pytest
 
 from app.gui.theme import LIGHT
 from app.gui.views.scene import Frustum
+from app.gui.views.scene.arm import Arm
+from app.gui.views.scene.arm_mesh import arm_pieces
 from app.gui.views.scene.camera import Camera
+from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.layers import (
-    Arm,
-    Candies,
     CropBox,
     frusta_layer,
     label_layer,
     line_layer,
     points_layer,
 )
-from core.geometry import look_at, make_pose
-from core.motion.arm_models import UR5, Capsule
-from core.motion.kinematics import flange_pose
+from app.gui.views.scene.shapes import box_mesh
+from core.geometry import look_at, make_pose, transform_points
+from core.motion.arm_models import UR5, UR5E, Capsule, arm_shape
+from core.motion.kinematics import flange_pose, link_poses
 
 SIZE = (900, 600)
 STATES = ("pending", "taken", "poor", "failed")
 
 
+LENTIL = box_mesh((-0.006, -0.006, -0.003), (0.006, 0.006, 0.003))
+FLAT = (0, 0, 0, 1)
+
+
 def candies(n=4, kept=None):
-    made = Candies(n, 0.01, kept)
-    made.move(np.arange(3 * n, dtype=float).reshape(n, 3))
+    made = Candies(n, LENTIL, kept)
+    made.move(np.arange(3 * n, dtype=float).reshape(n, 3), np.tile(FLAT, (n, 1)))
     return made
 
 
-def test_kept_and_lost_candies_differ_in_shape_and_colour():
-    part = candies(2, np.array([True, False])).layer.parts[0]
-    n_faces = part.n_triangles
-    assert n_faces == 80 + 8
-    colors = part.paint.colors(LIGHT)
-    assert (colors[0] != colors[-1]).any()
+def test_lost_candies_have_a_rim_and_less_colour():
+    bodies, rims = candies(3, np.array([True, False, True])).layer.parts
+    assert (len(bodies.poses), len(rims.poses)) == (3, 1)
+    assert rims.is_rim and (np.abs(rims.vertices_m).max(axis=0) > np.abs(bodies.vertices_m).max(axis=0)).all()
+    saturation = np.ptp(bodies.paint.colors(LIGHT)[:, :3], axis=1)
+    assert saturation[1] < 0.1 < saturation[[0, 2]].min()
+
+
+def test_where_nothing_is_lost_there_are_no_rims():
+    assert len(candies(3).layer.parts) == 1
 
 
 def test_candies_are_where_they_are_put():
@@ -44,11 +54,20 @@ def test_candies_are_where_they_are_put():
     assert outline.max(axis=0) == pytest.approx((9, 10, 11), abs=0.011)
 
 
+def test_candies_lie_as_they_were_recorded():
+    made = candies(2, np.array([True, False]))
+    made.move(np.zeros((2, 3)), [(0, 0, 0, 2), (0.5, 0, 0, 0.5)])
+    turned = np.array([(0, 0, 0, 1), (0.5**0.5, 0, 0, 0.5**0.5)])
+    assert made.layer.parts[0].poses[:, 3:] == pytest.approx(turned)
+    assert made.layer.parts[1].poses[:, 3:] == pytest.approx(turned[1:])
+
+
 def test_a_candy_without_a_place_is_neither_seen_nor_picked():
     made = candies()
-    made.move(np.array([[0, 0, 0], [np.nan] * 3, [0, 0, 1], [np.nan] * 3], dtype=float))
-    placed = np.isfinite(made.layer.parts[0].vertices_m).all(axis=1)
-    assert placed.sum() == 2 * 42
+    made.move(
+        np.array([[0, 0, 0], [np.nan] * 3, [0, 0, 1], [np.nan] * 3], dtype=float), np.tile(FLAT, (4, 1))
+    )
+    assert made.layer.parts[0].poses.any(axis=1).sum() == 2
     ray = Camera(center_m=(0, 0, 1)).ray((450, 300), SIZE)
     assert made.layer.target.hit(ray)[1] == 2
 
@@ -57,7 +76,7 @@ def test_moving_candies_makes_no_new_faces():
     made = candies()
     part = made.layer.parts[0]
     indices, revision = part.indices, part.revision
-    made.move(np.zeros((4, 3)))
+    made.move(np.zeros((4, 3)), np.tile(FLAT, (4, 1)))
     assert part.indices is indices
     assert part.revision > revision
 
@@ -107,19 +126,52 @@ def test_no_views_no_parts():
     assert frusta_layer([]).parts == ()
 
 
+GRIPPER_TOOL = Capsule("gripper", 6, (0, 0, 0), (0, 0, 0.12), 0.04)
+CAMERA_TOOL = Capsule("camera", 6, (-0.08, -0.06, 0.03), (0.08, -0.06, 0.03), 0.025)
+JOINTS = np.array([0.3, -1.6, 1.6, -1.5, -1.57, 0.2])
+
+
 def test_an_arm_ends_where_its_tool_is():
-    joints = np.array([0.3, -1.6, 1.6, -1.5, -1.57, 0.2])
-    arm = Arm(UR5, [Capsule("tool", 6, (0, 0, 0), (0, 0, 0.2), 0.01)], is_ghost=False)
-    arm.move(joints)
-    tip = flange_pose(UR5, joints) @ (0, 0, 0.21, 1)
+    arm = Arm(UR5, [GRIPPER_TOOL], "solid")
+    arm.move(JOINTS)
+    tip = flange_pose(UR5, JOINTS) @ (0, 0, 0.16, 1)
     gaps = np.linalg.norm(arm.layer.outline_m() - tip[:3], axis=1)
-    assert gaps.min() < 1e-6
+    assert gaps.min() < 0.035
+
+
+@pytest.mark.parametrize("model", [UR5, UR5E], ids=["UR5", "UR5e"])
+def test_what_is_shown_of_an_arm_lies_within_its_collision_shape(model):
+    """But for some millimetres: lids protrude, and capsules have no edges."""
+    tools = [GRIPPER_TOOL, CAMERA_TOOL]
+    poses = link_poses(model, JOINTS)
+    capsules = arm_shape(model, tools).capsules
+    for link, color, (vertices, _) in arm_pieces(model, tools):
+        points = transform_points(poses[link], vertices)
+        gaps = [
+            distances_to_segment(points, transform_points(poses[c.link], [c.start_m, c.end_m])) - c.radius_m
+            for c in capsules
+        ]
+        assert np.min(gaps, axis=0).max() < 0.026, (link, color)
+
+
+def distances_to_segment(points, ends):
+    along = ends[1] - ends[0]
+    share = np.clip((points - ends[0]) @ along / max(along @ along, 1e-12), 0, 1)
+    return np.linalg.norm(points - ends[0] - share[:, None] * along, axis=1)
 
 
 def test_a_ghost_is_see_through_and_of_another_colour():
-    colors = [Arm(UR5, [], is_ghost).layer.parts[0].paint.colors(LIGHT) for is_ghost in (False, True)]
+    colors = [Arm(UR5, [], looks).layer.parts[0].paint.colors(LIGHT) for looks in ("solid", "ghost")]
     assert colors[0][3] == 1 and colors[1][3] < 0.6
     assert (colors[0][:3] != colors[1][:3]).any()
+
+
+def test_the_collision_shape_is_as_large_as_its_capsules():
+    arm = Arm(UR5, [GRIPPER_TOOL], "collision")
+    arm.move(np.zeros(6))
+    low = arm.layer.outline_m()[:, 2].min()
+    assert low == pytest.approx(-0.08, abs=0.02)
+    assert all(part.paint.opacity < 0.5 for part in arm.layer.parts)
 
 
 def box():

@@ -8,7 +8,9 @@ import pytest
 from app.gui.theme import DARK, LIGHT
 from app.gui.views.scene import ColorScale, prepare_mesh
 from app.gui.views.scene.parts import Paint
-from app.gui.views.scene.shapes import ball, box_mesh
+from app.gui.views.scene.shapes import box_mesh, capsule_mesh
+from core.mesh import TriangleMesh
+from core.mesh_topology import weld
 from tests.benchmarks.scene_speed import mug
 
 SCALE = ColorScale("Height", "mm", 10, 20)
@@ -52,8 +54,11 @@ def test_paint_without_a_value_falls_back_to_its_name():
     assert unknown == pytest.approx(Paint(("body",)).colors(LIGHT))
 
 
+BALL = weld(TriangleMesh(*capsule_mesh((0, 0, 0), (0, 0, 0), 1.0)))
+
+
 def test_normals_of_a_ball_point_outwards():
-    vertices, faces = ball()
+    vertices, faces = BALL.vertices_m, BALL.faces
     mesh = prepare_mesh(3 * vertices + 1, faces)
     assert np.einsum("ij,ij->i", mesh.normals, vertices) == pytest.approx(np.ones(len(vertices)), abs=0.01)
 
@@ -71,7 +76,7 @@ def test_a_vertex_without_faces_and_a_face_without_area_do_no_harm():
 
 
 def test_a_wire_frame_has_each_edge_once():
-    vertices, faces = ball()
+    vertices, faces = BALL.vertices_m, BALL.faces
     edges = prepare_mesh(vertices, faces, is_wireframe=True).edges
     assert len(edges) == len(vertices) + len(faces) - 2
     assert len(np.unique(np.sort(edges, axis=1), axis=0)) == len(edges)

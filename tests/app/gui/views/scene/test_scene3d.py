@@ -140,8 +140,8 @@ def test_a_view_of_the_camera_is_picked_by_its_index(qtbot, scene):
 
 
 def test_a_candy_is_picked_by_its_index(qtbot, scene):
-    scene.set_candies("candies", 2, 0.01)
-    scene.set_candy_positions("candies", [(0, 0, 0), (0, 0, 0.1)])
+    scene.set_candies("candies", 2, box_mesh((-0.01,) * 3, (0.01,) * 3))
+    scene.set_candy_poses("candies", [(0, 0, 0), (0, 0, 0.1)], [(0, 0, 0, 1)] * 2)
     scene.fit("candies")
     scene.look_from("top")
     with qtbot.waitSignal(scene.picked) as emitted:

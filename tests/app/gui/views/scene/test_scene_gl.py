@@ -12,12 +12,24 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QLabel, QMainWindow, QStackedWidget
 
 from app.gui.theme import DARK, LIGHT, palette_of
-from app.gui.views.scene import ColorScale, Frustum, Scene3D, box_mesh, cylinder_mesh, prepare_mesh
+from app.gui.views.scene import (
+    ColorScale,
+    Frustum,
+    Scene3D,
+    box_mesh,
+    cylinder_mesh,
+    prepare_mesh,
+    revolved_mesh,
+)
+from app.gui.views.scene.camera import Camera
+from app.gui.views.scene.candies import CANDY_COLORS, LOST_COLOR
+from app.gui.views.scene.occlusion import surface_points_m
 from core.geometry import look_at
 from core.motion.arm_models import UR5
 from tests.benchmarks.scene_speed import frame_seconds, mug, replay_scene
 
 pytestmark = pytest.mark.gl
+CANDY = revolved_mesh([(0.0, 0.01), (0.02, 0.004), (0.02, -0.004), (0.0, -0.01)])
 CUBE = box_mesh((-0.1, -0.1, -0.1), (0.1, 0.1, 0.1))
 GAP = 60
 """How far colours (0 to 255) may be from the theme's: they are shaded."""
@@ -134,14 +146,58 @@ def test_see_through_layers_are_drawn_from_far_to_near(scene):
 
 
 def test_kept_and_lost_candies_are_seen_and_absent_ones_are_not(scene):
-    scene.set_candies("candies", 3, 0.02, np.array([True, False, True]))
-    scene.set_candy_positions("candies", [(-0.05, 0, 0), (0.05, 0, 0), (0, np.nan, 0)])
+    turns = [(0, 0, 0, 1)] * 3
+    scene.set_candies("candies", 3, CANDY, np.array([True, False, True]))
+    scene.set_candy_poses("candies", [(-0.05, 0, 0), (0.05, 0, 0), (0, np.nan, 0)], turns)
     scene.fit()
     picture = pixels(scene.grab_image())
-    kept, lost = n_like(picture, rgb(LIGHT, "kept")), n_like(picture, rgb(LIGHT, "lost"))
-    assert kept > 2000 and lost > 2000
-    scene.set_candy_positions("candies", [(-0.05, 0, 0), (np.nan, 0, 0), (0, np.nan, 0)])
-    assert n_like(pixels(scene.grab_image()), rgb(LIGHT, "lost")) < 20
+    rim, grey = n_like(picture, rgb(LIGHT, "lost"), 30), n_like(picture, QColor(LOST_COLOR).getRgb()[:3], 30)
+    colours = [n_like(picture[:, :200], QColor(color).getRgb()[:3], 45) for color in CANDY_COLORS]
+    assert rim > 300 and grey > 1000 and max(colours) > 1000
+    scene.set_candy_poses("candies", [(-0.05, 0, 0), (np.nan, 0, 0), (0, np.nan, 0)], turns)
+    assert n_like(pixels(scene.grab_image()), rgb(LIGHT, "lost"), 30) < 20
+
+
+def test_a_candy_that_stands_on_its_edge_looks_narrow(scene):
+    scene.set_candies("candies", 1, CANDY)
+    shares = []
+    for turn in ((0, 0, 0, 1), (0.5**0.5, 0, 0, 0.5**0.5)):
+        scene.set_candy_poses("candies", [(0, 0, 0)], [turn])
+        scene.look_from("top")
+        shares.append((np.abs(pixels(scene.grab_image()) - rgb(LIGHT, "scene")).max(axis=-1) > 30).mean())
+    assert shares[1] < 0.75 * shares[0]
+
+
+def test_the_ground_is_opaque_from_above_has_shadows_and_is_not_in_the_way_from_below(scene):
+    scene.set_ground("ground", (0, 0, -0.1), (0.5, 0.5), surface_points_m(*CUBE, 20_000), grid_m=0.0)
+    scene.set_points("corners", [(-0.3, -0.3, 0), (0.3, 0.3, 0)], size_px=1)
+    scene.fit("corners")
+    scene.look_from("top")
+    picture = pixels(scene.grab_image())
+    assert np.abs(picture[150, 300] - rgb(LIGHT, "ground")).max() < 12
+    assert picture[150, 200].max() < rgb(LIGHT, "ground").min() - 40
+    scene.set_mesh("cube", *CUBE, color="lost")
+    scene.findChild(QOpenGLWidget).set_camera(Camera((0, 0, 0), 1.5, -90, -89))
+    assert np.abs(middle(scene) - rgb(LIGHT, "lost")).max() < GAP
+
+
+def test_the_ground_has_lines(scene):
+    scene.set_ground("ground", (0, 0, 0), (0.5, 0.5), np.empty((0, 3)), grid_m=0.1, fades=False)
+    scene.set_points("corners", [(-0.3, -0.3, 0), (0.3, 0.3, 0)], size_px=1)
+    scene.fit("corners")
+    scene.look_from("top")
+    row = pixels(scene.grab_image())[100, 60:340].max(axis=-1)
+    assert 4 <= (np.diff((row < row.max() - 3).astype(int)) == 1).sum() <= 8
+
+
+def test_words_are_legible_over_a_ground(scene):
+    """Its texture leaves the painter of the labels as it was."""
+    scene.set_mesh("cube", *CUBE, color="kept")
+    scene.set_label("label", (0, 0, 0.1), "WWWWWWWW")
+    scene.fit("cube")
+    before = pixels(scene.grab_image())
+    scene.set_ground("ground", (0, 0, -5), (0.01, 0.01), np.empty((0, 3)))
+    assert (np.abs(pixels(scene.grab_image()) - before).max(axis=-1) > 20).sum() < 20
 
 
 def test_an_arm_moves_when_its_joints_do(scene):
@@ -189,7 +245,7 @@ def test_a_picture_has_smooth_edges(scene):
 
 def test_a_still_view_is_not_painted_again(qtbot, scene):
     scene.set_mesh("cube", *CUBE)
-    scene.set_arm("ghost", UR5, np.zeros(6), is_ghost=True)
+    scene.set_arm("ghost", UR5, np.zeros(6), looks="ghost")
     qtbot.wait(1000)
     frames = []
     scene.findChild(QOpenGLWidget).frameSwapped.connect(lambda: frames.append(1))
