@@ -19,18 +19,24 @@ from core.motion.view_tour import clear_moves, shortest_order
 from core.motion.views import Dome, ReachableView, ViewTask, reachable_views, seen_points
 
 AROUND_BOX = Dome(
-    elevations_deg=(20, 35, 50, 60, 70, 80, 90),
+    elevations_deg=(20, 35, 50, 60, 70, 80, 85, 90),
     azimuths_deg=tuple(range(-180, 180, 30)),
-    distances_m=(0.4, 0.5, 0.6, 0.75),
-    rolls_deg=tuple(range(-180, 180, 90)),
+    distances_m=(0.4, 0.55, 0.75),
+    rolls_deg=tuple(range(-180, 180, 45)),
 )
 _SAMPLES = 5
-"""Patches along each edge of a side."""
+"""Patches along each edge of a side, ..."""
+_FROM_EDGE = 0.02
+"""... the first and the last this share of its length from its ends."""
 _WIDE_M = 0.2
 """A box wider than this does not fit into one image: views aim at its quarters, too."""
-_STEEPEST_INCIDENCE_DEG = 75.0
+_FLATTEST_INCIDENCE_DEG = 75.0
+_BESIDE_QUALITY = 0.3
+"""Of a flat look along an outer wall: it shows the air before the wall, which then does not become solid."""
 _FLOOR_WEIGHT = 4.0
 """Of a patch of the floor: it shows from few directions, and its holes decide what the object contains."""
+_TOP_WEIGHT = 2.0
+"""Of a patch of the rim's plane."""
 _SHARE_A_VIEW = 0.5
 """How much of what is not known of a patch a view straight onto it tells."""
 _HALF_TURN_RAD = np.pi
@@ -59,7 +65,7 @@ class BoxPatches:
 
 def box_patches(box_min_m: FloatArray, box_max_m: FloatArray) -> BoxPatches:
     """Spread patches evenly over the sides, the rim's plane, the inner walls and the floor of a box."""
-    shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
+    shares = np.linspace(_FROM_EDGE, 1 - _FROM_EDGE, _SAMPLES)
     size = box_max_m - box_min_m
     parts = []
     for axis, end in product(range(3), (0.0, 1.0)):
@@ -69,7 +75,7 @@ def box_patches(box_min_m: FloatArray, box_max_m: FloatArray) -> BoxPatches:
         outwards = np.eye(3)[axis] * (1 if end else -1)
         is_floor, is_top = axis == 2 and not end, axis == 2 and bool(end)
         if not is_floor:
-            parts.append((grid, outwards, False, 1.0))
+            parts.append((grid, outwards, False, _TOP_WEIGHT if is_top else 1.0))
         if not is_top:
             parts.append((grid, -outwards, True, _FLOOR_WEIGHT if is_floor else 1.0))
     n = _SAMPLES**2
@@ -86,7 +92,7 @@ def box_patches(box_min_m: FloatArray, box_max_m: FloatArray) -> BoxPatches:
 def patch_quality(
     patches: BoxPatches, T_base_camera: FloatArray, task: ViewTask, baseline_m: float
 ) -> FloatArray:
-    """How well (N, P) each camera (N, 4, 4) measures each patch: the cosine of its incidence, or 0.
+    """How well (N, P) each camera (N, 4, 4) measures each patch: about the cosine of its incidence, or 0.
 
     Args:
         patches: what is to be seen.
@@ -96,13 +102,20 @@ def patch_quality(
     """
     eyes = T_base_camera[:, :3, 3]
     projectors = eyes + baseline_m * T_base_camera[:, :3, 0]
-    towards = eyes[:, None] - patches.points_m
-    facing = (towards * patches.normals).sum(axis=-1) / np.linalg.norm(towards, axis=-1)
-    is_seen = facing > np.cos(np.radians(_STEEPEST_INCIDENCE_DEG))
-    is_seen &= seen_points(task, T_base_camera, patches.points_m)
+    distances_m = np.linalg.norm(eyes[:, None] - patches.points_m, axis=-1)
+    facing = _in_front_m(patches, eyes) / distances_m
+    quality = np.where(facing > np.cos(np.radians(_FLATTEST_INCIDENCE_DEG)), facing, 0.0)
+    quality = np.where(patches.is_inside, quality, np.maximum(quality, _BESIDE_QUALITY))
+    is_seen = seen_points(task, T_base_camera, patches.points_m)
     for origins in (eyes, projectors):
+        is_seen &= _in_front_m(patches, origins) > 0
         is_seen &= ~patches.is_inside | _through_mouth(patches, origins)
-    return np.asarray(np.where(is_seen, facing, 0.0))
+    return np.asarray(np.where(is_seen, quality, 0.0))
+
+
+def _in_front_m(patches: BoxPatches, origins_m: FloatArray) -> FloatArray:
+    """How far (N, P) each origin (N, 3) is in front of each patch's plane."""
+    return np.asarray(((origins_m[:, None] - patches.points_m) * patches.normals).sum(axis=-1))
 
 
 def _through_mouth(patches: BoxPatches, origins_m: FloatArray) -> BoolArray:
@@ -191,12 +204,13 @@ def _near_home(views: Iterable[ReachableView], task: ViewTask) -> list[Reachable
 
 
 def _targets_m(low_m: FloatArray, high_m: FloatArray) -> Iterable[FloatArray]:
-    """The middles of rim and body; of a wide box also those of its quarters."""
+    """The middles of rim and body, of a wide box those of its quarters, and the middles of its sides."""
     middle, size = (low_m + high_m) / 2, high_m - low_m
-    sides = [(-0.25, 0.25) if size[k] > _WIDE_M else (0.0,) for k in (0, 1)]
+    across = [(-0.25, 0.25) if size[k] > _WIDE_M else (0.0,) for k in (0, 1)]
     heights = (0.5, 0.0) if size[2] > _WIDE_M else (0.0,)
-    for x, y, z in product(*sides, heights):
-        yield middle + np.array([x, y, z]) * size
+    sides = ((-0.5, 0.0, 0.0), (0.5, 0.0, 0.0), (0.0, -0.5, 0.0), (0.0, 0.5, 0.0))
+    for shares in (*product(*across, heights), *sides):
+        yield middle + np.array(shares) * size
 
 
 def _is_clear_from_home(scene: MotionScene, task: ViewTask, view: ReachableView) -> bool:

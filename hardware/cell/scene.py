@@ -19,7 +19,7 @@ end of the upper arm."""
 
 
 def motion_scene(cell: CellSettings, object_box: CropBox | None = None) -> MotionScene:
-    """Return arm, tools and obstacles; the object may fill its whole box: the crop box, unless one is given."""
+    """Return arm, tools and obstacles; the object may fill its whole box, by default the crop box."""
     arm = ARMS[cell.robot.model]
     box = object_box or cell.place.crop_box
     whole_box = axis_aligned_obstacle(OBJECT_BOX, box.min_m, box.max_m)
@@ -27,7 +27,7 @@ def motion_scene(cell: CellSettings, object_box: CropBox | None = None) -> Motio
 
 
 def plans_views(cell: CellSettings) -> bool:
-    """Whether the views of an object that the cell's own do not suit are planned; not those of a recording."""
+    """Whether views are planned for an object that the cell's own do not suit; a recording has its own."""
     return cell.scan.views == "planned" and cell.robot.kind != "replay"
 
 

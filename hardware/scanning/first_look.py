@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import InputError
-from core.motion.views import Dome, ViewTask, choose_spread_views
 from core.motion.box_views import in_short_order, views_clear_from_home
+from core.motion.views import Dome, ViewTask, choose_spread_views
 from core.progress import Reporter
 from core.quality.object_box import ObjectBox, find_object_box
 from core.scan.model import CropBox, Intrinsics, crop_box
@@ -52,9 +52,9 @@ class FirstLook:
 
 
 def first_look_views(settings: CellSettings) -> tuple[PlannedView, ...]:
-    """Choose views that keep clear of all the space an object may fill, each reached straight from home; 0.5 s.
+    """Choose views that keep clear of all the space an object may fill; none if the arm reaches none.
 
-    None if the arm reaches none.
+    Each has a clear straight way from home.
     """
     space = object_space(settings)
     low, high = np.array(space.min_m), np.array(space.max_m)
@@ -109,7 +109,9 @@ def _watching(cell: Cell, space: CropBox) -> Cell:
     """The cell with an arm that keeps clear of all of the space, and a crop box a little larger than that."""
     beyond = np.array([_BEYOND_M, _BEYOND_M, 0.0])
     around = crop_box(space.min_m - beyond, np.array(space.max_m) + _BEYOND_M)
-    return replace(cell, settings=with_crop_box(cell.settings, around), scene=motion_scene(cell.settings, space))
+    return replace(
+        cell, settings=with_crop_box(cell.settings, around), scene=motion_scene(cell.settings, space)
+    )
 
 
 def _too_large(settings: CellSettings, box: ObjectBox, space: CropBox) -> str:

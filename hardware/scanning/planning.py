@@ -50,8 +50,8 @@ def plan_scan(
     views = first_look_views(settings)
     if not views:
         reporter.warn(
-            "No view is high enough for a first look, so the views of the cell file are taken; choose another "
-            "home_rad there, or lower highest_object_m."
+            "The arm reaches no view high enough for a first look, so the views of the cell file are taken; "
+            "choose another home_rad there, or lower highest_object_m."
         )
         return fixed_plan(cell)
     look = look_first(cell, views, reporter, control, moving_in)
@@ -67,7 +67,7 @@ def fixed_plan(cell: Cell) -> ScanPlan:
 
 
 def cell_for_plan(cell: Cell, plan: ScanPlan) -> Cell:
-    """Return the cell as a plan has it: with its crop box, and an arm that keeps clear of its keep-out box."""
+    """Return the cell as a plan has it: its crop box, and an arm that keeps clear of its keep-out box."""
     settings = with_crop_box(cell.settings, plan.crop_box)
     return replace(cell, settings=settings, scene=motion_scene(settings, plan.keep_out))
 
@@ -77,8 +77,8 @@ def _fixed_views_suit(settings: CellSettings) -> bool:
     joints = np.array(settings.scan.views_rad)
     least_m = settings.scan.min_clearance_m
     blocked = motion_scene(settings).clearance(joints)
-    object_names = {name for k in np.nonzero(blocked.distance_m < least_m)[0] for name in blocked.nearest(k)}
-    return OBJECT_BOX not in object_names
+    too_near = np.flatnonzero(blocked.distance_m < least_m).tolist()
+    return all(OBJECT_BOX not in blocked.nearest(k) for k in too_near)
 
 
 def _planned(cell: Cell, look: FirstLook, box: ObjectBox) -> ScanPlan:

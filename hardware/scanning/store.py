@@ -41,8 +41,13 @@ class ScanStore:
         self._plan = read_plan(folder)
 
     @property
+    def has_begun(self) -> bool:
+        """Whether the folder holds views."""
+        return (self.folder / VIEWS_FILE).exists()
+
+    @property
     def plan(self) -> ScanPlan | None:
-        """From where the scan is taken; none before that was planned, and in scans of before there were plans.
+        """From where the scan is taken; none before that is planned, nor in scans of before there were plans.
 
         It is written with the views.
         """
@@ -61,7 +66,7 @@ class ScanStore:
         self._place = platform_height_m, crop_box
         with explained(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
-        if not (self.folder / VIEWS_FILE).exists():
+        if not self.has_begun:
             return []
         table = read_json(self.folder / VIEWS_FILE)
         records = _records(table)
