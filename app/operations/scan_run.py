@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from hardware.scanning.store import ScanStore
     from hardware.scanning.views import ScanPlan
 
+FIRST_LOOK = "first look"
+
 
 @dataclass(frozen=True)
 class Watch:
@@ -91,6 +93,7 @@ class ScanRun:
             plan = fixed_plan(self._cell)
         if plan is None:
             control = None if self._observer is None else self._observer.control
+            self._reporter.progress(FIRST_LOOK, 0, 1)
             plan = plan_scan(self._cell, self._reporter, control, self._move_to_look)
         self._store.plan = plan
         return plan

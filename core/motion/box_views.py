@@ -30,13 +30,6 @@ _FROM_EDGE = 0.02
 """... the first and the last this share of its length from its ends."""
 _WIDE_M = 0.2
 """A box wider than this does not fit into one image: views aim at its quarters, too."""
-_FLATTEST_INCIDENCE_DEG = 75.0
-_BESIDE_QUALITY = 0.3
-"""Of a flat look along an outer wall: it shows the air before the wall, which then does not become solid."""
-_FLOOR_WEIGHT = 4.0
-"""Of a patch of the floor: it shows from few directions, and its holes decide what the object contains."""
-_TOP_WEIGHT = 2.0
-"""Of a patch of the rim's plane."""
 _SHARE_A_VIEW = 0.5
 """How much of what is not known of a patch a view straight onto it tells."""
 _HALF_TURN_RAD = np.pi
@@ -51,6 +44,8 @@ class BoxPatches:
         normals: (P, 3) away from the wall.
         is_inside: (P,) whether only the mouth shows it.
         weights: (P,) what seeing it is worth.
+        least_facing: (P,) cosine of the flattest incidence at which it is measured.
+        flat_quality: (P,) of a flatter look, which shows the air before it: that does not become solid then.
         box_min_m: (3,) lower corner of the box.
         box_max_m: (3,) upper corner; its top is the mouth.
     """
@@ -59,31 +54,51 @@ class BoxPatches:
     normals: FloatArray
     is_inside: BoolArray
     weights: FloatArray
+    least_facing: FloatArray
+    flat_quality: FloatArray
     box_min_m: FloatArray
     box_max_m: FloatArray
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """What the patches of one side of a wall have in common; see `BoxPatches`."""
+
+    is_inside: bool
+    weight: float
+    flattest_deg: float
+    flat_quality: float
+
+
+_OUTSIDE = _Kind(False, 1.0, 75.0, 0.3)
+_INSIDE = _Kind(True, 1.0, 75.0, 0.0)
+_FLOOR = _Kind(True, 4.0, 75.0, 0.0)
+"""It shows from few directions, and its holes decide what the object contains."""
+_TOP = _Kind(False, 2.0, 45.0, 0.0)
+"""Steep looks alone end on the rim, and so show the air above it."""
 
 
 def box_patches(box_min_m: FloatArray, box_max_m: FloatArray) -> BoxPatches:
     """Spread patches evenly over the sides, the rim's plane, the inner walls and the floor of a box."""
     shares = np.linspace(_FROM_EDGE, 1 - _FROM_EDGE, _SAMPLES)
-    size = box_max_m - box_min_m
     parts = []
     for axis, end in product(range(3), (0.0, 1.0)):
-        others = [k for k in range(3) if k != axis]
         grid = np.full((_SAMPLES**2, 3), end)
-        grid[:, others] = np.stack(np.meshgrid(shares, shares), axis=-1).reshape(-1, 2)
+        grid[:, [k for k in range(3) if k != axis]] = np.stack(np.meshgrid(shares, shares), -1).reshape(-1, 2)
         outwards = np.eye(3)[axis] * (1 if end else -1)
-        is_floor, is_top = axis == 2 and not end, axis == 2 and bool(end)
-        if not is_floor:
-            parts.append((grid, outwards, False, _TOP_WEIGHT if is_top else 1.0))
-        if not is_top:
-            parts.append((grid, -outwards, True, _FLOOR_WEIGHT if is_floor else 1.0))
+        if axis < 2:
+            parts += [(grid, outwards, _OUTSIDE), (grid, -outwards, _INSIDE)]
+        else:
+            parts.append((grid, outwards, _TOP) if end else (grid, -outwards, _FLOOR))
+    kinds = [kind for *_, kind in parts]
     n = _SAMPLES**2
     return BoxPatches(
-        np.concatenate([box_min_m + grid * size for grid, *_ in parts]),
-        np.repeat([normal for _, normal, *_ in parts], n, axis=0),
-        np.repeat([inside for _, _, inside, _ in parts], n),
-        np.repeat([weight for *_, weight in parts], n),
+        np.concatenate([box_min_m + grid * (box_max_m - box_min_m) for grid, *_ in parts]),
+        np.repeat([normal for _, normal, _ in parts], n, axis=0),
+        np.repeat([kind.is_inside for kind in kinds], n),
+        np.repeat([kind.weight for kind in kinds], n),
+        np.repeat([np.cos(np.radians(kind.flattest_deg)) for kind in kinds], n),
+        np.repeat([kind.flat_quality for kind in kinds], n),
         box_min_m,
         box_max_m,
     )
@@ -104,8 +119,7 @@ def patch_quality(
     projectors = eyes + baseline_m * T_base_camera[:, :3, 0]
     distances_m = np.linalg.norm(eyes[:, None] - patches.points_m, axis=-1)
     facing = _in_front_m(patches, eyes) / distances_m
-    quality = np.where(facing > np.cos(np.radians(_FLATTEST_INCIDENCE_DEG)), facing, 0.0)
-    quality = np.where(patches.is_inside, quality, np.maximum(quality, _BESIDE_QUALITY))
+    quality = np.maximum(np.where(facing > patches.least_facing, facing, 0.0), patches.flat_quality)
     is_seen = seen_points(task, T_base_camera, patches.points_m)
     for origins in (eyes, projectors):
         is_seen &= _in_front_m(patches, origins) > 0

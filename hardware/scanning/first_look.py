@@ -75,6 +75,18 @@ def first_look_views(settings: CellSettings) -> tuple[PlannedView, ...]:
     )
 
 
+class _Quiet(Reporter):
+    """Says nothing, for these images are not kept: neither how many there are, nor that one is poor."""
+
+    def __init__(self, outside: Reporter) -> None:
+        super().__init__()
+        self._outside = outside
+
+    def raise_if_cancelled(self) -> None:
+        """See `Reporter`; it is the one outside who is asked."""
+        self._outside.raise_if_cancelled()
+
+
 def look_first(
     cell: Cell,
     views: tuple[PlannedView, ...],
@@ -87,7 +99,7 @@ def look_first(
     Args:
         cell: entered.
         views: what `first_look_views` returned.
-        reporter: receives the progress.
+        reporter: may cancel it.
         control: pauses it.
         moving_in: how the arm is moved.
 
@@ -97,7 +109,7 @@ def look_first(
     """
     settings, space = cell.settings, object_space(cell.settings)
     looking = _watching(cell, space)
-    procedure = ScanProcedure(looking, None, reporter, control, moving=moving_in(looking), stage="first look")
+    procedure = ScanProcedure(looking, None, _Quiet(reporter), control, moving=moving_in(looking))
     procedure.take(views)
     box = find_object_box(procedure.volume, settings.place.platform_height_m, space)
     if box is not None and not box.is_within(space):

@@ -35,7 +35,7 @@ def plan_scan(
 
     Args:
         cell: entered.
-        reporter: receives the progress and warnings.
+        reporter: receives warnings, and may cancel it.
         control: pauses the first look.
         moving_in: how the arm is moved.
 

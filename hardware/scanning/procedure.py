@@ -91,12 +91,10 @@ class ScanProcedure:
         taken: ViewTaken | None = None,
         planned: ViewsPlanned | None = None,
         moving: Moving | None = None,
-        stage: str = STAGE,
     ) -> None:
         """Begin, or continue what the store's folder holds; without a store nothing goes to the disk.
 
-        A real arm needs a `moving` that asks; without one only an arm that is not real moves. `stage` names
-        the progress.
+        A real arm needs a `moving` that asks; without one only an arm that is not real moves.
 
         Raises:
             SessionError: the folder holds another scan, or cannot be written.
@@ -111,7 +109,6 @@ class ScanProcedure:
         self._taken = taken
         self._planned = planned
         self._moving = moving or self._unwatched()
-        self._stage = stage
         self._frames: dict[str, RgbdFrame] = {}
         self._intrinsics: Intrinsics | None = None
         self._last: RgbdFrame | None = None
@@ -307,7 +304,7 @@ class ScanProcedure:
         for problem in outcome.problems:
             kind = "left out" if not outcome.has_image else "poor"
             self._reporter.warn(f"View {outcome.view.name} is {kind}: {problem}")
-        self._reporter.progress(self._stage, self._n_taken, len(self.records))
+        self._reporter.progress(STAGE, self._n_taken, len(self.records))
         if self._taken is not None:
             frame = self._frames[outcome.view.name] if outcome.has_image else None
             self._taken(outcome, frame, self.volume)

@@ -29,7 +29,7 @@ def quality_from(eye_m):
 
 
 def test_from_above_the_mouth_shows_the_floor_and_no_outer_side():
-    patches, quality = quality_from(MIDDLE_M + [0, 0, 0.7])
+    patches, quality = quality_from(MIDDLE_M + np.array([0, 0, 0.7]))
     floor = patches.is_inside & (patches.normals[:, 2] > 0)
     sides = ~patches.is_inside & (patches.normals[:, 2] == 0)
     assert (quality[floor] > 0.9).all()
@@ -37,7 +37,7 @@ def test_from_above_the_mouth_shows_the_floor_and_no_outer_side():
 
 
 def test_from_the_side_only_the_outside_that_faces_the_camera_is_seen():
-    patches, quality = quality_from(MIDDLE_M + [0, 0.6, 0])
+    patches, quality = quality_from(MIDDLE_M + np.array([0, 0.6, 0]))
     seen = quality > 0
     assert seen.any()
     assert not patches.is_inside[seen].any()
@@ -45,7 +45,7 @@ def test_from_the_side_only_the_outside_that_faces_the_camera_is_seen():
 
 
 def test_from_an_oblique_angle_the_inner_wall_across_is_seen_and_the_near_one_is_not():
-    patches, quality = quality_from(MIDDLE_M + [0.35, 0, 0.5])
+    patches, quality = quality_from(MIDDLE_M + np.array([0.35, 0, 0.5]))
     across = patches.is_inside & (patches.normals[:, 0] > 0)
     near = patches.is_inside & (patches.normals[:, 0] < 0)
     assert (quality[across] > 0).any()
