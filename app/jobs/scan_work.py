@@ -71,7 +71,7 @@ class ScanWork(Service):
     def prepare(self) -> None:
         """Import what a scan needs."""
         from core.pipeline import pipeline  # noqa: F401
-        from hardware.scanning import next_best_views  # noqa: F401
+        from hardware.scanning import next_best_views, planning  # noqa: F401
         from hardware.simulation import objects, placing  # noqa: F401
 
     def close(self) -> None:

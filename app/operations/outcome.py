@@ -14,6 +14,7 @@ from core.session import explained
 from core.session.cups import cup_of_run
 from core.session.pour_runs import STATES_FILE, Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings
+from hardware.cell.scene import object_space
 from hardware.cell.settings import ARMS
 from hardware.pouring.pouring import PLAN_FOLDER
 from hardware.pouring.run_log import read_states
@@ -85,5 +86,5 @@ def _true_mesh(pipeline: Pipeline, settings: CellSettings) -> tuple[TriangleMesh
     if "object" not in record.parameters:
         return pipeline.surface(), "The true object is not known; its reconstruction took its place."
     mesh = object_mesh(record.parameters["object"], pipeline.reporter)
-    T_base_object = place_on_platform(mesh, record.parameters["seed"], settings.place)
+    T_base_object = place_on_platform(mesh, record.parameters["seed"], settings.place, object_space(settings))
     return transform_mesh(mesh, T_base_object), ""

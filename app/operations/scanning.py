@@ -11,18 +11,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from app.library.session_folder import UNFINISHED_SCAN
-from app.operations.arm import ArmOperator, connected, recover
-from core.errors import Cancelled, InputError, StageError
+from app.operations.arm import ArmOperator, connected
+from app.operations.scan_run import ScanRun, Watch
+from core.errors import InputError, StageError
 from core.progress import Reporter
-from hardware.errors import RobotError
 
 if TYPE_CHECKING:
     from core.mesh import TriangleMesh
     from core.pipeline.pipeline import Pipeline
     from hardware.cell import Cell, CellSettings
-    from hardware.pouring.run_log import RunLog
-    from hardware.scanning.moving import WatchedMoving
-    from hardware.scanning.procedure import ScanControl, ScanProcedure, ViewsPlanned, ViewTaken
+    from hardware.scanning.procedure import ScanControl, ViewsPlanned, ViewTaken
     from hardware.scanning.route import ScanRoute
     from hardware.scanning.store import ScanStore
 
@@ -145,54 +143,14 @@ def _take(
     operator: ScanOperator | None,
 ) -> None:
     from hardware.pouring.run_log import RunLog
-    from hardware.scanning.moving import WatchedMoving
-    from hardware.scanning.procedure import ScanProcedure
 
-    control, taken, planned = (
-        (None, None, None) if observer is None else (observer.control, observer.taken, observer.planned)
-    )
     reporter = pipeline.reporter
     with nullcontext() if observer is None else observer.opened(cell):
         if operator is None or not cell.settings.robot.is_real:
-            _take_all(cell, ScanProcedure(cell, store, reporter, control, taken, planned), request)
+            ScanRun(cell, store, reporter, observer).take(request)
             return
-        robot = cell.robot.name
         with RunLog(_next_run_folder(pipeline.session.path)) as log:
-            moving = WatchedMoving(cell, log, reporter, lambda route: operator.confirm_route(route, robot))
-            procedure = ScanProcedure(cell, store, reporter, control, taken, planned, moving)
-            _take_all_with_recovery(cell, procedure, moving, request, operator, log)
-
-
-def _take_all(cell: Cell, procedure: ScanProcedure, request: ScanRequest) -> None:
-    from hardware.scanning.next_best_views import take_next_best_views
-    from hardware.scanning.views import name_views
-
-    procedure.take(name_views(cell.views_rad))
-    procedure.retake(request.retake)
-    if request.adaptive:
-        take_next_best_views(cell, procedure)
-    procedure.scan()  # refuses what is too little for a scan
-
-
-def _take_all_with_recovery(
-    cell: Cell,
-    procedure: ScanProcedure,
-    moving: WatchedMoving,
-    request: ScanRequest,
-    operator: ScanOperator,
-    log: RunLog,
-) -> None:
-    """After a stop: make the arm ready, plan from where it is, ask; what was taken is not taken again."""
-    while True:
-        try:
-            _take_all(cell, procedure, request)
-            log.event("done", "All views were taken.")
-            return
-        except (RobotError, Cancelled) as error:
-            if not operator.is_present or not moving.was_stopped:
-                raise
-            recover(cell.robot, cell.robot, operator, error)
-            log.event("recovered", "The arm was made ready again.")
+            ScanRun(cell, store, reporter, observer, Watch(operator, log)).take(request)
 
 
 def _next_run_folder(session: Path) -> Path:
@@ -203,9 +161,10 @@ def _next_run_folder(session: Path) -> Path:
 
 def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
     from hardware.cell import open_cell
+    from hardware.cell.scene import object_space
     from hardware.simulation.placing import world_with
 
-    world = None if mesh is None else world_with(mesh, settings.place, seed)
+    world = None if mesh is None else world_with(mesh, settings.place, seed, object_space(settings))
     return open_cell(settings, world, seed)
 
 
@@ -243,14 +202,18 @@ def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
     from core.quality.cavity import coarse_volume, find_hidden_cavity
     from core.scan import read_scan
     from hardware.scanning.next_best_views import propose
+    from hardware.scanning.planning import cell_for_plan
+    from hardware.scanning.store import read_plan
 
-    scan = read_scan(scan_folder, Reporter())
-    volume = coarse_volume(scan, settings.place.crop_box)
+    scan, plan = read_scan(scan_folder, Reporter()), read_plan(scan_folder)
+    cell = _unconnected(settings)
+    cell = cell if plan is None else cell_for_plan(cell, plan)
+    volume = coarse_volume(scan, cell.settings.place.crop_box)
     n_hidden = len(find_hidden_cavity(volume, settings.place.platform_height_m).region)
     if n_hidden == 0:
         return Proposal(0, 0.0)
     height, width = scan.frames[0].depth_m.shape
-    proposals = propose(_unconnected(settings), volume, scan.intrinsics, (width, height))
+    proposals = propose(cell, volume, scan.intrinsics, (width, height))
     return Proposal(len(proposals), sum(n_revealed for _, n_revealed in proposals) / n_hidden)
 
 

@@ -109,14 +109,18 @@ def _alternatives(view: ReachableView, all_views: Sequence[ReachableView]) -> li
 
 def _order_layers(layers: list[list[ReachableView]], home_rad: FloatArray) -> list[list[ReachableView]]:
     """Order by 2-opt on the nearest alternatives' distances, starting near home."""
-    n = len(layers)
     joints = [np.array([home_rad])] + [np.array([view.joints_rad for view in layer]) for layer in layers]
     apart = np.array([[_joint_distances(a, b).min() for b in joints] for a in joints])
+    return [layers[k - 1] for k in shortest_order(apart)[1:]]
+
+
+def shortest_order(apart: FloatArray) -> list[int]:
+    """Order stops by their distances (N, N) into a short tour that begins at the first and ends anywhere."""
     order = [0]
-    while len(order) <= n:
-        left = [k for k in range(1, n + 1) if k not in order]
+    while len(order) < len(apart):
+        left = [k for k in range(len(apart)) if k not in order]
         order.append(min(left, key=lambda k: apart[order[-1], k]))
-    return [layers[k - 1] for k in _two_opt(order, apart)[1:]]
+    return _two_opt(order, apart)
 
 
 def _two_opt(order: list[int], apart: FloatArray) -> list[int]:

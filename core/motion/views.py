@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from core.geometry import FloatArray, IntArray, look_at, make_pose, rotation_z
+from core.geometry import BoolArray, FloatArray, IntArray, look_at, make_pose, rotation_z
 from core.motion.clearance import MotionScene
 from core.motion.joint_path import MIN_CLEARANCE_M
 from core.motion.kinematics import (
@@ -178,13 +178,18 @@ def _seen_shares(task: ViewTask, T_base_camera: FloatArray) -> FloatArray:
     low, high = task.box_min_m, task.box_max_m
     shares = (np.arange(_BOX_SAMPLES) + 0.5) / _BOX_SAMPLES
     grid = np.stack(np.meshgrid(shares, shares, shares), axis=-1).reshape(-1, 3)
+    return np.asarray(seen_points(task, T_base_camera, low + grid * (high - low)).mean(axis=1))
+
+
+def seen_points(task: ViewTask, T_base_camera: FloatArray, points_m: FloatArray) -> BoolArray:
+    """Which points (P, 3) each camera (N, 4, 4) has in its image and beyond its least range: (N, P)."""
     T_camera_base = np.linalg.inv(T_base_camera)
-    points = (low + grid * (high - low)) @ np.swapaxes(T_camera_base[:, :3, :3], -1, -2)
+    points = points_m @ np.swapaxes(T_camera_base[:, :3, :3], -1, -2)
     points += T_camera_base[:, None, :3, 3]
     half = np.tan(np.radians(task.field_of_view_deg) / 2)
     depth = np.maximum(points[..., 2:], 1e-6)
     inside = (np.abs(points[..., :2] / depth) <= half).all(axis=-1) & (points[..., 2] >= task.min_range_m)
-    return np.asarray(inside.mean(axis=1))
+    return np.asarray(inside)
 
 
 def choose_spread_views(views: Sequence[ReachableView], n_views: int) -> tuple[ReachableView, ...]:

@@ -18,17 +18,37 @@ class Group(BaseModel):
 
 
 def quantity(
-    default: Any, doc: str, *, unit: str, source: str, low: float | None = None, high: float | None = None
+    default: Any,
+    doc: str,
+    *,
+    unit: str,
+    source: str,
+    low: float | None = None,
+    high: float | None = None,
+    is_written: bool = True,
 ) -> Any:
-    """Declare a number (or numbers) in `unit` between `low` and `high`, both included."""
+    """Declare a number (or numbers) in `unit` between `low` and `high`, both included.
+
+    With `is_written` false a default is not written: records of before there was such a number stay the same.
+    """
     return Field(
-        default, description=doc, ge=low, le=high, json_schema_extra={"unit": unit, "source": source}
+        default,
+        description=doc,
+        ge=low,
+        le=high,
+        exclude_if=None if is_written else lambda value: bool(value == default),
+        json_schema_extra={"unit": unit, "source": source},
     )
 
 
-def choice(default: Any, doc: str, *, source: str) -> Any:
-    """Declare a word out of a few (its type is a `Literal`) or a yes/no."""
-    return Field(default, description=doc, json_schema_extra={"unit": "", "source": source})
+def choice(default: Any, doc: str, *, source: str, is_written: bool = True) -> Any:
+    """Declare a word out of a few (its type is a `Literal`) or a yes/no; see `quantity` for `is_written`."""
+    return Field(
+        default,
+        description=doc,
+        exclude_if=None if is_written else lambda value: bool(value == default),
+        json_schema_extra={"unit": "", "source": source},
+    )
 
 
 def declaration(doc: str, *, source: str) -> Any:

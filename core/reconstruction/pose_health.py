@@ -86,11 +86,20 @@ def measure_view_health(
 
 
 def _find_table(frame: RgbdFrame, intrinsics: Intrinsics, box: CropBox, max_depth_m: float) -> Plane | None:
-    low, high = np.array(box.min_m[:2]), np.array(box.max_m[:2])
+    low, high = np.array(box.min_m), np.array(box.max_m)
     points = frame.points_m(intrinsics, max_depth_m=max_depth_m, stride=STRIDE)
-    is_near = (points[:, :2] > low - SURROUNDINGS_M) & (points[:, :2] < high + SURROUNDINGS_M)
+    is_near = (points[:, :2] > low[:2] - SURROUNDINGS_M) & (points[:, :2] < high[:2] + SURROUNDINGS_M)
     points = points[is_near.all(axis=1)]
-    plane = find_plane(points) if len(points) >= FEWEST_POINTS else None
+    plane = _large_plane(points)
+    if plane is None or plane.height_m(*(low[:2] + high[:2]) / 2) <= low[2]:
+        return plane
+    # It may be the floor of a large object.
+    is_in_box = ((points > low) & (points < high)).all(axis=1)
+    return _large_plane(points[~is_in_box])
+
+
+def _large_plane(points_m: FloatArray) -> Plane | None:
+    plane = find_plane(points_m) if len(points_m) >= FEWEST_POINTS else None
     return plane if plane is not None and plane.share >= SMALLEST_SHARE else None
 
 

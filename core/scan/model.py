@@ -63,6 +63,12 @@ class CropBox:
     max_m: tuple[float, float, float]
 
 
+def crop_box(min_m: npt.ArrayLike, max_m: npt.ArrayLike) -> CropBox:
+    """Make a box of two corners (3,)."""
+    low, high = np.asarray(min_m, dtype=float).tolist(), np.asarray(max_m, dtype=float).tolist()
+    return CropBox((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
 @dataclass(frozen=True)
 class Scan:
     """All views of one object, and what is known of the place where it stood.

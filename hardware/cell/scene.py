@@ -7,8 +7,10 @@ import numpy as np
 from core.motion.arm_models import Capsule, arm_shape, capsule_around_box
 from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
 from core.motion.pour.cell import GRIPPER, PourCell
+from core.scan.model import CropBox, crop_box
 from hardware.cell.settings import ARMS, CellSettings
 
+OBJECT_BOX = "object's box"
 _TABLE_REACH_M = 1.5
 _TABLE_DEPTH_M = 0.5
 _STANDS_THERE = frozenset({"base", "shoulder", "upper arm"})
@@ -16,12 +18,34 @@ _STANDS_THERE = frozenset({"base", "shoulder", "upper arm"})
 end of the upper arm."""
 
 
-def motion_scene(cell: CellSettings) -> MotionScene:
-    """Return arm, tools and obstacles; the object may fill its whole box."""
+def motion_scene(cell: CellSettings, object_box: CropBox | None = None) -> MotionScene:
+    """Return arm, tools and obstacles; the object may fill its whole box, by default the crop box."""
     arm = ARMS[cell.robot.model]
-    place = cell.place
-    whole_box = axis_aligned_obstacle("object's box", place.crop_min_m, place.crop_max_m)
+    box = object_box or cell.place.crop_box
+    whole_box = axis_aligned_obstacle(OBJECT_BOX, box.min_m, box.max_m)
     return MotionScene(arm, arm_shape(arm, _tools(cell)), _obstacles(cell, whole_box))
+
+
+def plans_views(cell: CellSettings) -> bool:
+    """Whether views are planned for an object that the cell's own do not suit; a recording has its own."""
+    return cell.scan.views == "planned" and cell.robot.kind != "replay"
+
+
+def object_space(cell: CellSettings) -> CropBox:
+    """Return where an object may stand: the crop box; with planned views all of the platform, and higher."""
+    place = cell.place
+    if not plans_views(cell):
+        return place.crop_box
+    low, high = np.array(place.crop_min_m), np.array(place.crop_max_m)
+    low[:2] = np.minimum(low[:2], place.platform_min_m)
+    top_m = place.platform_height_m + cell.scan.highest_object_m
+    return crop_box(low, np.maximum(high, [*place.platform_max_m, top_m]))
+
+
+def with_crop_box(cell: CellSettings, box: CropBox) -> CellSettings:
+    """Return the cell with another crop box."""
+    corners = {"crop_min_m": box.min_m, "crop_max_m": box.max_m}
+    return cell.model_copy(update={"place": cell.place.model_copy(update=corners)})
 
 
 def pour_cell(cell: CellSettings) -> PourCell:

@@ -265,12 +265,20 @@ class PlaceSettings(Group):
 class ScanSettings(Group):
     """How the object is scanned (Sec. IV-A)."""
 
+    views: Literal["planned", "fixed"] = choice(
+        "planned", "planned: for the object's box, if views_rad do not suit it; fixed: always views_rad.",
+        source=OURS, is_written=False,
+    )  # fmt: skip
     views_rad: tuple[Joints, ...] = Field(
         min_length=1,
         max_length=200,
         description="Joint configurations of the views, in their order.",
         json_schema_extra={"unit": "rad", "source": _CELL},
     )
+    highest_object_m: float = quantity(
+        0.42, "Planned views: no object rises higher above the platform.",
+        unit="m", source=OURS, low=0.01, high=1, is_written=False,
+    )  # fmt: skip
     settle_s: float = quantity(
         0.3, "How long the arm must have been at rest before an image.", unit="s", source=OURS, low=0, high=10
     )

@@ -41,11 +41,13 @@ class ScanRoute:
         legs: in their order, each from where the one before ends.
         duration_s: of all motions, and of resting at each view.
         tool_speed_m_s: of the fastest point of arm and tools.
+        purpose: the beginning of a sentence that says what for; empty for the scan's own views.
     """
 
     legs: tuple[Leg, ...]
     duration_s: float
     tool_speed_m_s: float
+    purpose: str = ""
 
     @property
     def n_views(self) -> int:
@@ -56,8 +58,8 @@ class ScanRoute:
     def sentence(self) -> str:
         """For people."""
         said = (
-            f"{self.n_views} views in about {self.duration_s:.0f} s, no part of the arm faster than "
-            f"{self.tool_speed_m_s:.2f} m/s."
+            f"{self.purpose}{self.n_views} views in about {self.duration_s:.0f} s, no part of the arm faster "
+            f"than {self.tool_speed_m_s:.2f} m/s."
         )
         left_out = [leg.view.name for leg in self.legs if leg.trajectory is None]
         return said + (f" Without a clear way to {', '.join(left_out)}." if left_out else "")

@@ -6,7 +6,9 @@ from core.mesh import TriangleMesh
 from core.progress import Reporter
 from core.scan.model import Scan
 from hardware.cell import open_cell, read_cell
+from hardware.cell.scene import object_space
 from hardware.cell.settings import CellSettings, SimulationSettings
+from hardware.scanning.planning import cell_for_plan, plan_scan
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
 from hardware.simulation.depth_noise import DepthNoise
@@ -20,7 +22,7 @@ def simulate_scan(
     noise: DepthNoise | None = None,
     cell: CellSettings | None = None,
 ) -> Scan:
-    """Put an object on the simulated cell's platform at random and take its views.
+    """Put an object on the simulated cell's platform at random, plan its views and take them.
 
     The images are taken from disturbed poses, the frames carry the undisturbed ones: that is the pose error.
 
@@ -32,13 +34,16 @@ def simulate_scan(
         cell: a simulated one, with its own noise; none: the shipped one.
 
     Raises:
-        InputError: the object does not fit into the crop box.
+        InputError: the object does not fit on the platform.
+        MotionError: the arm reaches too few views of it.
         Cancelled: on request.
     """
     settings = simulated_cell(noise) if cell is None else cell
-    with open_cell(settings, world_with(mesh, settings.place, seed), seed) as opened:
-        procedure = ScanProcedure(opened, None, reporter)
-        procedure.take(name_views(settings.scan.views_rad))
+    world = world_with(mesh, settings.place, seed, object_space(settings))
+    with open_cell(settings, world, seed) as opened:
+        plan = plan_scan(opened, reporter)
+        procedure = ScanProcedure(cell_for_plan(opened, plan), None, reporter)
+        procedure.take(name_views(plan.views_rad))
         return procedure.scan()
 
 

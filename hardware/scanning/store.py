@@ -7,6 +7,8 @@ disk can be continued.
 from __future__ import annotations
 
 import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -16,10 +18,10 @@ from core.files import read_json, write_json
 from core.progress import Reporter
 from core.scan import RgbdFrame, Scan, read_scan, write_camera, write_frame
 from core.scan.authors_layout import ENDINGS, FRAMES_FOLDER
-from core.scan.model import CropBox, Intrinsics
+from core.scan.model import CropBox, Intrinsics, crop_box
 from core.session import explained
 from core.session.record import RECORD_FILE
-from hardware.scanning.views import PlannedView, ViewRecord, ViewState
+from hardware.scanning.views import PlannedView, ScanPlan, ViewRecord, ViewState
 
 VIEWS_FILE = "views.json"
 
@@ -36,6 +38,24 @@ class ScanStore:
         self.folder = folder
         self._origin = origin
         self._camera: Intrinsics | None = None
+        self._plan = read_plan(folder)
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether the folder holds views."""
+        return (self.folder / VIEWS_FILE).exists()
+
+    @property
+    def plan(self) -> ScanPlan | None:
+        """From where the scan is taken; none before that is planned, nor in scans of before there were plans.
+
+        It is written with the views.
+        """
+        return self._plan
+
+    @plan.setter
+    def plan(self, plan: ScanPlan) -> None:
+        self._plan = plan
 
     def begin(self, platform_height_m: float, crop_box: CropBox) -> list[ViewRecord]:
         """Prepare the folder and return what became of the views of an interrupted scan.
@@ -46,7 +66,7 @@ class ScanStore:
         self._place = platform_height_m, crop_box
         with explained(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
-        if not (self.folder / VIEWS_FILE).exists():
+        if not self.has_begun:
             return []
         table = read_json(self.folder / VIEWS_FILE)
         records = _records(table)
@@ -83,6 +103,7 @@ class ScanStore:
             shutil.copytree(
                 finished, self.folder, ignore=shutil.ignore_patterns(RECORD_FILE, "warnings.json")
             )
+        self._plan = read_plan(self.folder)
 
     def publish(self, stage: Path) -> None:
         """Copy everything into a stage's empty folder."""
@@ -91,6 +112,7 @@ class ScanStore:
     def remove(self) -> None:
         """Throw everything away."""
         shutil.rmtree(self.folder, ignore_errors=True)
+        self._plan = None
 
     def write_view(self, frame: RgbdFrame, intrinsics: Intrinsics, records: list[ViewRecord]) -> None:
         """Write a view, and what became of all so far.
@@ -109,7 +131,14 @@ class ScanStore:
         """Write what became of the views so far."""
         views = [asdict(record.view) | _outcome(record) for record in records]
         with explained(self.folder):
-            write_json(self.folder / VIEWS_FILE, {"origin": self._origin, "views": views})
+            write_json(
+                self.folder / VIEWS_FILE,
+                {
+                    "origin": self._origin,
+                    "plan": None if self._plan is None else asdict(self._plan),
+                    "views": views,
+                },
+            )
 
 
 def read_views(folder: Path) -> list[ViewRecord]:
@@ -135,12 +164,31 @@ def read_origin(folder: Path) -> dict[str, Any]:
     return origin if isinstance(origin, dict) else {}
 
 
+def read_plan(folder: Path) -> ScanPlan | None:
+    """Return from where the views in a folder are taken; none if nothing says so.
+
+    Raises:
+        SessionError: the file is damaged.
+    """
+    if not (folder / VIEWS_FILE).exists():
+        return None
+    table = read_json(folder / VIEWS_FILE).get("plan")
+    if table is None:
+        return None
+    with _explained():
+        return ScanPlan(
+            tuple(tuple(map(float, row)) for row in table["views_rad"]),
+            crop_box(table["crop_box"]["min_m"], table["crop_box"]["max_m"]),
+            crop_box(table["keep_out"]["min_m"], table["keep_out"]["max_m"]),
+        )
+
+
 def _outcome(record: ViewRecord) -> dict[str, Any]:
     return {"state": record.state.value, "problems": list(record.problems)}
 
 
 def _records(table: dict[str, Any]) -> list[ViewRecord]:
-    try:
+    with _explained():
         return [
             ViewRecord(
                 PlannedView(str(view["name"]), tuple(map(float, view["joints_rad"]))),
@@ -149,7 +197,13 @@ def _records(table: dict[str, Any]) -> list[ViewRecord]:
             )
             for view in table["views"]
         ]
-    except (KeyError, TypeError, ValueError) as error:
+
+
+@contextmanager
+def _explained() -> Iterator[None]:
+    try:
+        yield
+    except (IndexError, KeyError, TypeError, ValueError) as error:
         raise SessionError(
             f"{VIEWS_FILE} of the scan is damaged ({error!r}).", Remedy.RESTART_SCAN
         ) from error

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
 
+from core.scan.model import CropBox
+
 Joints = tuple[float, ...]
 
 
@@ -49,6 +51,21 @@ class ViewRecord:
     def has_image(self) -> bool:
         """Whether there is an image of it."""
         return self.state in (ViewState.TAKEN, ViewState.POOR)
+
+
+@dataclass(frozen=True)
+class ScanPlan:
+    """From where an object is scanned.
+
+    Attributes:
+        views_rad: joints of the views, in their order.
+        crop_box: what of the images belongs to the object.
+        keep_out: the box that the arm keeps clear of.
+    """
+
+    views_rad: tuple[Joints, ...]
+    crop_box: CropBox
+    keep_out: CropBox
 
 
 def name_views(joints_rad: Sequence[Joints], first: int = 0) -> tuple[PlannedView, ...]:

@@ -14,6 +14,7 @@ def stage_words(stage: str) -> str:
         "reconstruction": translate("Stage", "Reconstructing the surface"),
         "quality": translate("Stage", "Checking the scan"),
         "colors": translate("Stage", "Colouring the model"),
+        "first look": translate("Stage", "Finding the object's box"),
         "looking again": translate("Stage", "Choosing further views"),
         "collision": translate("Stage", "Making the collision model"),
         "containability": translate("Stage", "Dropping candies"),

@@ -17,6 +17,7 @@ from core.pipeline.given_mesh import GivenMesh
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
+from hardware.cell.scene import object_space
 from hardware.cell.settings import CellSettings, PlaceSettings
 from hardware.scanning.simulated import simulate_scan, simulated_cell
 from hardware.simulation.placing import WALL_MARGIN_M, place_on_platform, transform_mesh
@@ -64,9 +65,11 @@ def place_object(mesh: TriangleMesh, source: Input, seed: int) -> PlacedObject:
     Raises:
         InputError: the object does not fit into the crop box.
     """
-    place = cell_for(mesh).place
+    cell = cell_for(mesh)
+    place = cell.place
     if source == "scan":
-        return PlacedObject(transform_mesh(mesh, place_on_platform(mesh, seed, place)), place)
+        pose = place_on_platform(mesh, seed, place, object_space(cell))
+        return PlacedObject(transform_mesh(mesh, pose), place)
     middle = (mesh.aabb_min_m + mesh.aabb_max_m) / 2
     foot = np.array([*middle[:2], mesh.aabb_min_m[2]])
     return PlacedObject(transform_mesh(mesh, make_pose(np.eye(3), place.platform_center_m - foot)), place)
@@ -75,8 +78,8 @@ def place_object(mesh: TriangleMesh, source: Input, seed: int) -> PlacedObject:
 def cell_for(mesh: TriangleMesh) -> CellSettings:
     """Return the simulated cell, its crop box enlarged as an operator would for an object that is too large.
 
-    The arm keeps clear of the crop box, so views that come too near to it are left out. It is enlarged
-    upwards and along x, where the arm has clearance; along y it has none.
+    It is enlarged upwards and along x, where the arm has clearance; along y it has none. Views are planned
+    for an object whose box the arm cannot keep clear of in the cell's own.
     """
     cell = simulated_cell()
     place = cell.place

@@ -37,8 +37,12 @@ def controller():
 
 @pytest.fixture
 def words(controller, tmp_path):
-    """The command line of a scan with few views; the same for each try."""
-    text = few_views(tmp_path, 4).read_text()
+    """The command line of a scan with few views, and no first look; the same for each try."""
+    return command_line(controller, tmp_path, "fixed")
+
+
+def command_line(controller, tmp_path, views):
+    text = few_views(tmp_path, 4).read_text().replace('views = "planned"', f'views = "{views}"')
     text = text.replace('kind = "simulated"\nmodel', f'kind = "ur5"\naddress = "{controller.address}"\nmodel')
     cell = tmp_path / "rehearsal.toml"
     cell.write_text("is_rehearsal = true\n" + text)
@@ -76,6 +80,15 @@ def test_the_route_is_shown_and_driven_slowly_and_logged(poursight, words, contr
     kinds = [event["kind"] for event in events]
     assert kinds == ["planned", "confirmed", "move", "move", "move", "move", "done"]
     assert "scan:" not in poursight(*words)[2], "it is not taken again, so nobody is asked"
+
+
+def test_the_first_look_is_confirmed_by_itself(poursight, controller, tmp_path):
+    code, out, err = poursight(*command_line(controller, tmp_path, "planned"), "--yes")
+    assert code == 0, err
+    assert re.search(r"A first look, for the object's box: 3 views .*\n.*: 4 views", out), out
+    events = [json.loads(line) for line in (tmp_path / "session/scans/0001/events.jsonl").open()]
+    kinds = [event["kind"] for event in events]
+    assert kinds == ["planned", "confirmed", *3 * ["move"], "planned", "confirmed", *4 * ["move"], "done"]
 
 
 def test_a_stopped_scan_goes_on_after_recovery_along_a_new_route(

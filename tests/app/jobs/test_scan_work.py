@@ -292,7 +292,8 @@ def test_a_real_arm_waits_until_somebody_has_seen_its_route(process, cell, tmp_p
     pytest.importorskip("rtde_control")
     with ControllerProcess(joints_rad=cell.robot.home_rad, speed_up=6.0) as controller:
         real = cell.robot.model_copy(update={"kind": "ur5", "address": controller.address})
-        rehearsal = cell.model_copy(update={"robot": real, "is_rehearsal": True})
+        fixed = cell.scan.model_copy(update={"views": "fixed"})
+        rehearsal = cell.model_copy(update={"robot": real, "scan": fixed, "is_rehearsal": True})
         process.clear()
         scanning = Scanning(process, rehearsal, SessionTask(tmp_path / "session", Parameters(), "default"))
         scanning.start()
