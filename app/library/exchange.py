@@ -25,7 +25,6 @@ from core.errors import InputError, Remedy, SessionError, StageError
 from core.files import check_regular, reason
 from core.formats import excerpt
 from core.progress import Reporter
-from core.reconstruction.colors import MODEL_FILE, ModelColors
 from core.session import Session, explained
 from core.session.header import HEADER_FILE
 from core.workers import Task, WorkerPool
@@ -74,6 +73,8 @@ def export_model(session: Path, target: Path, overwrite: bool = False) -> None:
         InputError: another ending, or the target cannot be written, or exists and is not to be overwritten.
         SessionError: the session has no coloured model.
     """
+    from core.reconstruction.colors import MODEL_FILE, ModelColors  # brings Pillow along
+
     if not (session / "colors" / MODEL_FILE).is_file():
         raise SessionError(f"{session} holds no coloured model; reconstruct its scan.", Remedy.RUN_AGAIN)
     model = ModelColors.load(session / "colors").model

@@ -8,15 +8,17 @@ from typing import Literal
 import numpy as np
 import numpy.typing as npt
 
-from app.gui.views.scene.arm_mesh import Piece, arm_pieces
+from app.gui.views.scene.arm_mesh import CAP, DARK, TUBE, Piece, arm_pieces
 from app.gui.views.scene.parts import Layer, Paint, Part, prepare_mesh
-from app.gui.views.scene.shapes import Shape, capsule_mesh, merged
+from app.gui.views.scene.shapes import capsule_mesh, merged
 from core.motion.arm_models import ArmModel, Capsule, arm_shape
 from core.motion.kinematics import link_poses
 
 ArmLooks = Literal["solid", "ghost", "collision"]
 
-_GHOST_OPACITY, _COLLISION_OPACITY = 0.38, 0.3
+_COLORS = (TUBE, CAP, DARK)
+_GHOST, _COLLISION = 0.38, 0.3
+"""Opacities."""
 _GHOST_THICKER_M = 0.0015
 """Where both arms are at one place the ghost lies around the other, instead of flickering in it."""
 _GLOSS = 0.12
@@ -33,22 +35,9 @@ class Arm:
         """Make an arm that is as it looks (`solid`), a see-through one, or its collision shape."""
         self._model = model
         pieces = _capsules(model, tools) if looks == "collision" else arm_pieces(model, tools)
-        paints = {
-            "solid": None,
-            "ghost": Paint(("ghost",), opacity=_GHOST_OPACITY),
-            "collision": Paint(("accent",), opacity=_COLLISION_OPACITY),
-        }
-        groups: dict[tuple[int, str], list[Shape]] = {}
-        for piece in pieces:
-            color = piece.color if looks == "solid" else ""
-            groups.setdefault((piece.link, color), []).append(piece.shape)
-        self._links = [link for link, _ in groups]
-        thicker_m = _GHOST_THICKER_M if looks == "ghost" else 0.0
+        self._links = sorted({piece.link for piece in pieces})
         self.layer = Layer(
-            tuple(
-                _part(merged(shapes), paints[looks] or Paint((color,)), thicker_m)
-                for (_, color), shapes in groups.items()
-            )
+            tuple(_part([piece for piece in pieces if piece.link == link], looks) for link in self._links)
         )
 
     def move(self, joints_rad: npt.ArrayLike) -> None:
@@ -64,7 +53,16 @@ def _capsules(model: ArmModel, tools: Sequence[Capsule]) -> list[Piece]:
     return [Piece(c.link, "", capsule_mesh(c.start_m, c.end_m, c.radius_m)) for c in capsules]
 
 
-def _part(shape: Shape, paint: Paint, thicker_m: float) -> Part:
-    mesh = prepare_mesh(*shape)
-    vertices = mesh.vertices_m + np.float32(thicker_m) * mesh.normals
-    return Part("surface", vertices, paint, mesh.normals, mesh.faces.ravel(), gloss=_GLOSS)
+def _part(pieces: Sequence[Piece], looks: ArmLooks) -> Part:
+    """All pieces of one link as one surface: each part that is drawn takes time."""
+    mesh = prepare_mesh(*merged([piece.shape for piece in pieces]))
+    if looks == "ghost":
+        vertices, paint = mesh.vertices_m + _GHOST_THICKER_M * mesh.normals, Paint(("ghost",), opacity=_GHOST)
+    elif looks == "collision":
+        vertices, paint = mesh.vertices_m, Paint(("accent",), opacity=_COLLISION)
+    else:
+        counts = [len(piece.shape[0]) for piece in pieces]
+        which = np.repeat([_COLORS.index(piece.color) for piece in pieces], counts)
+        vertices, paint = mesh.vertices_m, Paint(_COLORS, which=which.astype(np.uint8))
+    placed = vertices.astype(np.float32)
+    return Part("surface", placed, paint, mesh.normals, mesh.faces.ravel(), gloss=_GLOSS)

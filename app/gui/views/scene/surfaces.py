@@ -70,7 +70,8 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
         enabled = self._bind()
         self._draw_triangles()
         for location in enabled:
-            glVertexAttribDivisorARB(location, 0)
+            if self._part.poses is not None:
+                glVertexAttribDivisorARB(location, 0)
             GL.glDisableVertexAttribArray(location)
         GL.glUseProgram(0)
 
@@ -86,7 +87,8 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
                 stride = _POSE_BYTES if name in _INSTANCES else 0
                 GL.glVertexAttribPointer(location, n, GL.GL_FLOAT, False, stride, GL.GLvoidp(before))
                 GL.glEnableVertexAttribArray(location)
-                glVertexAttribDivisorARB(location, int(is_many and name in ("pose", "color")))
+                if is_many and name in ("pose", "color"):
+                    glVertexAttribDivisorARB(location, 1)
                 enabled.append(location)
             self._buffers[name].release()
         if "color" not in self._buffers:

@@ -162,8 +162,8 @@ def distances_to_segment(points, ends):
 
 def test_a_ghost_is_see_through_and_of_another_colour():
     colors = [Arm(UR5, [], looks).layer.parts[0].paint.colors(LIGHT) for looks in ("solid", "ghost")]
-    assert colors[0][3] == 1 and colors[1][3] < 0.6
-    assert (colors[0][:3] != colors[1][:3]).any()
+    assert colors[0][0, 3] == 1 and colors[1][3] < 0.6
+    assert (colors[0][:, :3] != colors[1][:3]).any()
 
 
 def test_the_collision_shape_is_as_large_as_its_capsules():
