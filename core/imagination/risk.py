@@ -111,7 +111,7 @@ def imagine_risk(
         set_ups = [draw_set_up(parameters, k, center_m) for k in tries]
         pour = Pour(grid.pivot_m[i, j], float(grid.theta_rad[i]))
         tasks = [
-            replay_task(target, run, one.seen_from_object(pour.T_world_E), one.of_landing(parameters), False)
+            replay_task(target, run, one.seen_from_object(pour.T_world_E), one.parameters(parameters), False)
             for one, run in zip(set_ups, runs.of(context, set_ups), strict=True)
         ]
         outcomes: list[PourOutcome] = context.run(tasks, STAGE)
@@ -183,14 +183,7 @@ def draw_set_up(parameters: Parameters, packing: int, center_m: FloatArray) -> S
     lean = generator.normal(0, 1, 2) * risk.cup_error_rad
     slipped = make_pose(rotation_x(float(lean[0])) @ rotation_y(float(lean[1])), slip)
     scale = 1 + risk.candy_spread * float(generator.uniform(-1, 1))
-    more_restitution = risk.restitution_spread * float(generator.uniform())
-    drawn = replace(
-        as_planned(packing),
-        candy_scale=scale,
-        T_base_moved=moved,
-        T_E_slipped=slipped,
-        more_restitution=more_restitution,
-    )
+    drawn = replace(as_planned(packing), candy_scale=scale, T_base_moved=moved, T_E_slipped=slipped)
     while drawn.candy_scale > 1 and not cup_holds(drawn.parameters(parameters)):
         drawn = replace(drawn, candy_scale=1 + _CLOSER * (drawn.candy_scale - 1) - _LEAST_STEP)
     return drawn

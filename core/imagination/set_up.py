@@ -19,14 +19,12 @@ class SetUp:
         candy_scale: size of the candies, relative to the particle's.
         T_base_moved: (4, 4) how the object was moved, in the base frame.
         T_E_slipped: (4, 4) how the cup slipped in the hand, in the E-local frame (origin at the pivot).
-        more_restitution: what the candies bounce more on the object than `pouring.contact` says.
     """
 
     packing: int
     candy_scale: float
     T_base_moved: FloatArray
     T_E_slipped: FloatArray
-    more_restitution: float = 0.0
 
     def seen_from_object(self, T_base_E: FloatArray) -> FloatArray:
         """Return `T_base_E` (4, 4) as it is to an object that is where it is believed to be."""
@@ -36,14 +34,6 @@ class SetUp:
     def parameters(self, parameters: Parameters) -> Parameters:
         """Return the parameters with candies of this size."""
         return scaled_candies(parameters, self.candy_scale)
-
-    def of_landing(self, parameters: Parameters) -> Parameters:
-        """Return the parameters with candies of this size that bounce like this."""
-        pouring = parameters.pouring
-        restitution = min(pouring.contact.restitution + self.more_restitution, 1.0)
-        contact = pouring.contact.model_copy(update={"restitution": restitution})
-        bouncing = parameters.model_copy(update={"pouring": pouring.model_copy(update={"contact": contact})})
-        return self.parameters(bouncing)
 
 
 def scaled_candies(parameters: Parameters, scale: float) -> Parameters:

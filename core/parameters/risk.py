@@ -78,11 +78,3 @@ class RiskParameters(Group):
         low=0,
         high=0.4,
     )
-    restitution_spread: float = quantity(
-        0.3,
-        "Where they land, the candies of a try bounce more than `pouring.contact.restitution` by up to this.",
-        unit="",
-        source=f"{OURS}: docs/decisions/0014; what an object is made of is not known",
-        low=0,
-        high=1,
-    )
