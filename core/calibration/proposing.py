@@ -19,8 +19,8 @@ from core.calibration.rig import HAND_EYE, N_POSES, Rig, cross_matrices, image_d
 from core.calibration.views import LEAST_TILT_RAD, BoardView
 from core.geometry import BoolArray, FloatArray, transform_points
 from core.motion.clearance import MotionScene
-from core.motion.joint_path import MIN_CLEARANCE_M
-from core.motion.kinematics import flange_pose
+from core.motion.joint_path import MIN_CLEARANCE_M, check_path
+from core.motion.kinematics import branch_of, flange_pose
 from core.motion.views import Dome, ViewTask, reachable_views
 from core.scan.model import Intrinsics
 
@@ -63,7 +63,8 @@ class ProposalTask:
         rig: guessed, or fitted to the views that there are.
         board: as printed.
         image_size_px: width and height.
-        home_rad: (6,) joints are chosen within half a turn of it, where possible.
+        home_rad: (6,) poses are taken on its branch of the kinematics, so that no way leads through a
+            singularity, with joints within half a turn of it, where possible.
         aim_error_px: how far from where it is expected the board may show up.
         min_range_m: the camera sees nothing sharp closer than this.
         min_clearance_m: around arm and tools.
@@ -103,14 +104,17 @@ def propose_poses(
     for view in taken:
         total = total + _information(task, view.T_base_flange[None])[0]
     allowed = _allowed(candidates, refused_rad)
-    chosen = []
-    for _ in range(min(n_poses, int(allowed.sum()))):
-        best = int(np.where(allowed, _expected_errors(total + each), np.inf).argmin())
-        chosen.append(candidates[best])
-        total = total + each[best]
-        allowed &= ~_is_near(candidates, candidates[best].joints_rad)
-        if not allowed.any():
-            break
+    chosen: list[Proposal] = []
+    errors = _expected_errors(total + each)
+    while len(chosen) < n_poses and allowed.any():
+        best = int(np.where(allowed, errors, np.inf).argmin())
+        joints = candidates[best].joints_rad
+        allowed &= ~_is_near(candidates, joints)
+        # Straight from home: then there is a way from anywhere to anywhere, at worst by home.
+        if check_path(scene, np.array([task.home_rad, joints]), task.min_clearance_m).is_clear:
+            chosen.append(candidates[best])
+            total = total + each[best]
+            errors = _expected_errors(total + each)
     return tuple(chosen)
 
 
@@ -142,7 +146,11 @@ def _candidates(scene: MotionScene, task: ProposalTask) -> list[Proposal]:
         Proposal(view.joints_rad, flange_pose(scene.arm, view.joints_rad), view.clearance_m)
         for view in reachable_views(scene, views, _DOME)
     ]
-    return [proposal for proposal in found if _is_seen(task, outline, proposal.T_base_flange)]
+    if not found:
+        return []
+    branches = branch_of(scene.arm, np.array([proposal.joints_rad for proposal in found]))
+    same = branches == branch_of(scene.arm, task.home_rad)
+    return [p for p, is_same in zip(found, same, strict=True) if is_same and _is_seen(task, outline, p)]
 
 
 def _field_of_view_deg(task: ProposalTask) -> tuple[float, float]:
@@ -153,9 +161,9 @@ def _field_of_view_deg(task: ProposalTask) -> tuple[float, float]:
     return float(across), float(down)
 
 
-def _is_seen(task: ProposalTask, outline_m: FloatArray, T_base_flange: FloatArray) -> bool:
+def _is_seen(task: ProposalTask, outline_m: FloatArray, proposal: Proposal) -> bool:
     """Whether the whole board is in the image, even if it shows up a little elsewhere, and not frontal."""
-    T_base_camera = T_base_flange @ task.rig.T_flange_camera
+    T_base_camera = proposal.T_base_flange @ task.rig.T_flange_camera
     points = (outline_m - T_base_camera[:3, 3]) @ T_base_camera[:3, :3]
     half = np.tan(np.radians(_field_of_view_deg(task)) / 2)
     inside = (points[:, 2] > 0).all() and bool((np.abs(points[:, :2] / points[:, 2:]) <= half).all())

@@ -36,7 +36,7 @@ from core.geometry import (
 )
 from core.motion.kinematics import flange_pose
 from hardware.cell import read_cell
-from hardware.cell.scene import motion_scene
+from hardware.cell.scene import board_scene
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH
 
 ARM_POSITION_M, ARM_ANGLE_RAD = 0.0003, np.radians(0.03)
@@ -54,7 +54,7 @@ METHODS = {
     "Daniilidis": cv2.CALIB_HAND_EYE_DANIILIDIS,
 }
 CELL = read_cell()
-SCENE = motion_scene(CELL)
+SCENE = board_scene(CELL)
 BOARD = BoardSpec()
 LENS = Lens(CARMINE_INTRINSICS)
 PLACE_M = CELL.place.platform_center_m
