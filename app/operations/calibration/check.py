@@ -78,7 +78,7 @@ def check_cell(
     """
     settings, board = read_cell(cell_file), entered_board(cell_file)
     latest = latest_result(cell_file, HAND_EYE)
-    if latest is None or not is_same(np.array(latest[1]["after"]), settings.camera.pose):
+    if latest is None or not is_same(latest[1]["after"], settings.camera.pose):
         raise InputError(
             f"The hand-eye pose in {cell_file} is not one that was calibrated here; calibrate first."
         )
@@ -138,7 +138,7 @@ def _calibrated(folder: Path, table: dict[str, Any], board: BoardSpec, intrinsic
     _, looks = read_looks(folder)
     views = [look.view for look in looks if look.view is not None and look.is_used]
     with reading(folder / RESULT):
-        rig = Rig(np.array(table["after"]), np.array(table["T_base_board"]), intrinsics)
+        rig = Rig(table["after"], table["T_base_board"], intrinsics)
         return HandEyeFit(
             rig=rig,
             covariance=np.array(table["covariance"]),

@@ -147,14 +147,15 @@ def undo_calibration(cell_file: Path) -> FloatArray:
     if latest is None:
         raise InputError(f"No calibration of {cell_file} can be undone; there is none.")
     folder, table = latest
-    if not is_same(np.array(table["after"]), read_cell(cell_file).camera.pose):
+    if not is_same(table["after"], read_cell(cell_file).camera.pose):
         raise InputError(
             f"The hand-eye pose in {cell_file} was changed since the calibration of {table['time']}; "
             "correct it there."
         )
-    write_hand_eye(cell_file, np.array(table["before"]))
+    before: FloatArray = table["before"]
+    write_hand_eye(cell_file, before)
     withdraw(folder)
-    return np.array(table["before"])
+    return before
 
 
 def is_same(T_first: FloatArray, T_second: FloatArray) -> bool:

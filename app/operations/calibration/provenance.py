@@ -25,6 +25,8 @@ from core.session import explained
 
 VIEWS, RESULT, WITHDRAWN = "views.json", "result.json", ".withdrawn"
 HAND_EYE, CHECK = "hand-eye", "check"
+_POSES: dict[str, tuple[str, ...]] = {HAND_EYE: ("before", "after", "T_base_board"), CHECK: ()}
+"""What a step's result must hold as poses (4, 4)."""
 _TOOLS = ("poursight", "opencv-python-headless", "scipy", "numpy")
 
 
@@ -112,14 +114,17 @@ def new_run(cell: Path, step: str) -> Path:
 
 
 def latest_result(cell: Path, step: str) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest finished run of a step and its result.
+    """Return the newest finished run of a step and its result, whose poses are arrays (4, 4).
 
     Raises:
         SessionError: the result is damaged.
     """
     for folder in reversed(runs(cell, step)):
         if (folder / RESULT).is_file():
-            return folder, read_json(folder / RESULT, None)
+            table = read_json(folder / RESULT, None)
+            with reading(folder / RESULT):
+                poses = {name: _shaped(table[name], 4, 4) for name in _POSES[step]}
+            return folder, table | poses
     return None
 
 

@@ -134,7 +134,7 @@ def _hand_eye(cell_file: Path) -> Step:
             f"{stated['position_m'] * 1000:.2f} mm and {np.degrees(stated['angle_rad']):.3f} degrees; "
             f"{table['n_views']} views, unseen ones to {held_out['position_m'] * 1000:.2f} mm"
         )
-        time, after, board = str(table["time"]), np.array(table["after"]), table["board"]
+        time, after, board = str(table["time"]), table["after"], table["board"]
     entries = read_boards(cell_file)
     if not is_same(after, read_cell(cell_file).camera.pose):
         return Step(HAND_EYE, StepState.STALE, "the file has another hand-eye pose than was calibrated", time)

@@ -43,6 +43,7 @@ def comments(path):
     return [line.split("#")[1] for line in path.read_text().splitlines() if "#" in line]
 
 
+@pytest.mark.system
 def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
     path = new_cell("Bench one", is_simulated=True, seed=3)
     assert path == cells / "bench-one.toml" == cell_path("bench one")
@@ -82,6 +83,7 @@ def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
         undo_calibration(path)
 
 
+@pytest.mark.system
 def test_an_interrupted_calibration_goes_on_with_what_was_taken():
     path = measured_cell(seed=1)
     reporter = Reporter()
@@ -108,6 +110,7 @@ def test_wrongly_entered_squares_are_refused_at_the_first_look():
     assert path.read_bytes() == before
 
 
+@pytest.mark.system
 def test_a_board_that_moves_meanwhile_is_noticed_and_nothing_is_lost(monkeypatch):
     path = measured_cell(seed=2)
     before = path.read_bytes()
@@ -126,6 +129,7 @@ def test_a_board_that_moves_meanwhile_is_noticed_and_nothing_is_lost(monkeypatch
     assert sum(look.is_used for look in looks) >= N_VIEWS
 
 
+@pytest.mark.system
 def test_a_check_finds_a_camera_that_was_bumped(monkeypatch):
     path = measured_cell(seed=4)
     calibrated(path)
