@@ -10,7 +10,7 @@ import numpy as np
 from core.calibration.board import BoardSpec
 from core.calibration.hand_eye import HandEyeFit, fit_without
 from core.calibration.noise import pose_errors
-from core.calibration.rig import HAND_EYE, all_derivatives
+from core.calibration.rig import all_derivatives
 from core.calibration.views import BoardView
 from core.geometry import FloatArray, transform_points
 
@@ -117,11 +117,6 @@ def _middle_error_m(fit: HandEyeFit, view: BoardView, board: BoardSpec) -> float
     foretold = transform_points(fit.rig.T_base_board, board.center_m)
     seen = transform_points(view.T_base_flange @ fit.T_flange_camera @ view.T_camera_board, board.center_m)
     return float(np.linalg.norm(foretold - seen))
-
-
-def hand_eye_change(fit: HandEyeFit) -> FloatArray:
-    """Standard deviations (6,) of the hand-eye pose in the camera frame: rad, then metres."""
-    return np.asarray(np.sqrt(np.diag(fit.covariance[HAND_EYE, HAND_EYE])))
 
 
 def _quantile(values: FloatArray) -> float:

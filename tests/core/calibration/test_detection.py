@@ -89,6 +89,14 @@ def test_blur_is_measured_and_refused():
     assert "blurred" in judged(soft)
 
 
+def test_a_camera_that_moves_during_the_exposure_blurs_one_direction():
+    near = (0.12, -0.08, 0.36)
+    still, _, _ = seen(eye=near)
+    moving, _, _ = seen(eye=near, look=BoardLook(motion_px=(3.0, 0.0)))
+    blurs = [edge_blur_px(detect_board(image, BOARD, LENS), image, BOARD, LENS) for image in (still, moving)]
+    assert blurs[1] > blurs[0] + 0.2
+
+
 def test_a_repeated_view_is_refused():
     image, _, _ = seen()
     pose = make_pose(np.eye(3), (0.1, 0.2, 0.3))
