@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from app.cli.cell import cell
 from app.cli.evaluation import cluster, compare, evaluate, tune
 from app.cli.objects import objects
 from app.cli.options import (
@@ -287,6 +288,7 @@ for _command in (evaluate, compare, cluster, tune):
     app.command()(_command)
 app.command("calibrate", help="The same as 'tune'.")(tune)
 app.add_typer(objects, name="objects")
+app.add_typer(cell, name="cell")
 
 
 @app.command()

@@ -21,6 +21,7 @@ _SHOWN = (
     "pybullet",
     "mujoco-core",
     "open3d-cpu",
+    "opencv-python-headless",
     "trimesh",
     "vhacdx",
     "coacd",

@@ -100,7 +100,7 @@ def scan_devices(settings: CellSettings, world: World | None, seed: int) -> tupl
     if world is None:
         return real_camera(settings), robot, gripper
     noise = None if settings.simulation.is_perfect else settings.simulation.noise
-    return SimulatedCamera(world, robot, settings.camera.pose, noise, seed), robot, gripper
+    return SimulatedCamera(world, robot, settings.true_camera_pose, noise, seed), robot, gripper
 
 
 def _unknown_kind(device: str, kind: str, known: Iterable[str]) -> InputError:

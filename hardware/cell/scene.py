@@ -48,6 +48,12 @@ def with_crop_box(cell: CellSettings, box: CropBox) -> CellSettings:
     return cell.model_copy(update={"place": cell.place.model_copy(update=corners)})
 
 
+def board_scene(cell: CellSettings) -> MotionScene:
+    """Return arm, tools and obstacles around a flat board, in place of an object."""
+    arm = ARMS[cell.robot.model]
+    return MotionScene(arm, arm_shape(arm, _tools(cell)), _obstacles(cell))
+
+
 def pour_cell(cell: CellSettings) -> PourCell:
     """Return what the planning of a pour must know, without the object: its true size is known by then."""
     return PourCell(

@@ -20,6 +20,7 @@ from core.parameters.fields import OURS, Group, choice, declaration, quantity
 from core.resources import RESOURCES
 from core.scan.model import CropBox, Intrinsics
 from hardware.simulation.depth_noise import DepthNoise
+from hardware.simulation.set_up import SetUp
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -310,6 +311,7 @@ class SimulationSettings(Group):
         source=OURS,
     )  # fmt: skip
     noise: DepthNoise = DepthNoise()
+    set_up: SetUp | None = Field(None, exclude_if=lambda given: given is None)
 
 
 class CellSettings(Group):
@@ -338,6 +340,12 @@ class CellSettings(Group):
     def has_simulated_object(self) -> bool:
         """Whether the object, and what becomes of the candies, are simulated."""
         return self.camera.kind == "simulated"
+
+    @property
+    def true_camera_pose(self) -> FloatArray:
+        """`T_flange_camera` (4, 4) as it is: of a simulated set-up perhaps other than the file believes."""
+        set_up = self.simulation.set_up
+        return self.camera.pose if set_up is None else set_up.camera_pose
 
     @model_validator(mode="after")
     def _devices_fit(self) -> CellSettings:

@@ -1,0 +1,94 @@
+"""The commands that set a cell up; imports nothing heavy."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Optional
+
+import typer
+
+cell = typer.Typer(help="A cell from a bare table: board, calibration, check.", rich_markup_mode=None)
+
+NameArgument = Annotated[str, typer.Argument(metavar="NAME|FILE", help="A cell's name, or its file.")]
+YesOption = Annotated[bool, typer.Option("--yes", help="Let a real arm move without asking.")]
+
+
+@cell.command()
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What people call it.")],
+    simulated: Annotated[
+        bool, typer.Option("--simulated", help="A cell without devices, to rehearse in.")
+    ] = False,
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Of a simulated cell's true set-up.")] = 0,
+    address: Annotated[
+        Optional[str], typer.Option("--address", metavar="A", help="Of a real arm's controller.")  # noqa: UP045
+    ] = None,
+) -> None:
+    """Write a new cell's file, to be completed step by step."""
+    from app.cli import cell_commands
+
+    cell_commands.new(name, simulated, seed, address)
+
+
+@cell.command()
+def board(
+    name: NameArgument,
+    paper: Annotated[Literal["a4", "letter"], typer.Option("--paper", help="To print on.")] = "a4",
+    columns: Annotated[int, typer.Option("--columns", help="Squares in a row.")] = 8,
+    rows: Annotated[int, typer.Option("--rows", help="Rows of squares.")] = 5,
+    square_mm: Annotated[float, typer.Option("--square-mm", help="Side of a square to print.")] = 30.0,
+    dictionary: Annotated[str, typer.Option("--dictionary", help="Of its markers.")] = "4X4_50",
+    measured_mm: Annotated[
+        Optional[float],  # noqa: UP045
+        typer.Option("--measured-mm", help="Side of a square as measured on the print."),
+    ] = None,
+    undo: Annotated[bool, typer.Option("--undo", help="Forget the last entry.")] = False,
+) -> None:
+    """Print the calibration board to a PDF, and enter what its squares measure."""
+    from app.cli import cell_commands
+
+    if undo:
+        cell_commands.undo_board(name)
+    else:
+        cell_commands.board(name, paper, (columns, rows), square_mm, dictionary, measured_mm)
+
+
+@cell.command()
+def calibrate(
+    name: NameArgument,
+    views: Annotated[int, typer.Option("--views", min=6, max=60, help="How many views to take.")] = 20,
+    restart: Annotated[
+        bool, typer.Option("--restart", help="Leave the views of an interrupted run aside.")
+    ] = False,
+    undo: Annotated[bool, typer.Option("--undo", help="Put back what was there before.")] = False,
+    yes: YesOption = False,
+) -> None:
+    """Find where the camera hangs at the arm, and put it into the cell's file."""
+    from app.cli import cell_commands
+
+    if undo:
+        cell_commands.undo_calibration(name)
+    else:
+        cell_commands.calibrate(name, views, restart, yes)
+
+
+@cell.command()
+def check(
+    name: NameArgument,
+    undo: Annotated[bool, typer.Option("--undo", help="Let the last check count no more.")] = False,
+    yes: YesOption = False,
+) -> None:
+    """Check the calibration with the board in another place."""
+    from app.cli import cell_commands
+
+    if undo:
+        cell_commands.undo_check(name)
+    else:
+        raise typer.Exit(0 if cell_commands.check(name, yes) else 1)
+
+
+@cell.command()
+def show(name: NameArgument) -> None:
+    """List the steps: their state, their figures, and when they were done."""
+    from app.cli import cell_commands
+
+    cell_commands.show(name)

@@ -1,0 +1,229 @@
+"""Looking at the board: the arm goes from pose to pose, each look is judged, and kept at once."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from app.operations.arm import connected
+from app.operations.calibration.provenance import new_run, write_looks
+from app.operations.scanning import ScanOperator
+from core.calibration.board import BoardSpec
+from core.calibration.collecting import Collection, Look
+from core.calibration.detection import detect_board, gray, measured_square_m
+from core.calibration.lens import Lens
+from core.calibration.proposing import Proposal
+from core.calibration.views import board_view, why_unusable
+from core.errors import InputError, MotionError, StageError
+from core.progress import Reporter
+from hardware.cell import Cell
+from hardware.cell.calibrating import open_calibration_cell
+from hardware.cell.settings import CellSettings
+from hardware.errors import CameraError, CameraLost
+from hardware.interfaces import CameraImage
+from hardware.pouring.run_log import RunLog
+from hardware.scanning.moving import Moving, PlainMoving, WatchedMoving
+from hardware.scanning.views import PlannedView
+
+_STILL_RAD = 2e-4
+"""An arm that moves more than this during an image was not at rest."""
+_REST_S = 2.0
+_DEPTH_TOLERANCE = 0.05
+"""Depth that differs by more says that the squares were measured or entered wrongly."""
+
+LookTaken = Callable[[Look, int], None]
+"""Called with each look, and how many usable views there are by now."""
+
+
+@dataclass
+class Capture:
+    """A cell at work on one run; what `capturing` yields.
+
+    Attributes:
+        cell: connected.
+        folder: of the run.
+        facts: written beside the looks.
+        collection: the looks so far.
+        lens: of the camera.
+        moving: brings the arm to poses.
+        reporter: may cancel.
+        taken: called with each look.
+    """
+
+    cell: Cell
+    folder: Path
+    facts: dict[str, Any]
+    collection: Collection
+    lens: Lens
+    moving: Moving
+    reporter: Reporter
+    taken: LookTaken
+
+    def adopt(self, looks: Sequence[Look]) -> None:
+        """Go on with the looks of an interrupted run; their images stay where they are."""
+        self.collection.looks += looks
+        write_looks(self.folder, self.facts, self.collection.looks, None)
+
+    def look_here(self) -> Look:
+        """Look at the board from where the arm is."""
+        return self._keep(self._look(np.array(self.cell.robot.state().joints_rad)))
+
+    def go_and_look(self, poses: tuple[Proposal, ...]) -> None:
+        """Go from pose to pose; one without a clear way is passed over.
+
+        Raises:
+            PoursightError: the arm was stopped, or a device is gone; the looks before are kept.
+        """
+        first = len(self.collection.looks) + 1
+        views = [PlannedView(f"view {first + k}", tuple(p.joints_rad.tolist())) for k, p in enumerate(poses)]
+        self.moving.prepare(views)
+        for view, pose in zip(views, poses, strict=True):
+            self.reporter.raise_if_cancelled()
+            try:
+                self.moving.go(view)
+            except MotionError as error:
+                self._keep((Look(pose.joints_rad, None, str(error)), None))
+                continue
+            self._keep(self._look(pose.joints_rad))
+
+    def _keep(self, found: tuple[Look, CameraImage | None]) -> Look:
+        look, image = found
+        self.collection.looks.append(look)
+        png = None
+        if image is not None:
+            png = cv2.imencode(".png", cv2.cvtColor(image.color, cv2.COLOR_RGB2BGR))[1].tobytes()
+        write_looks(self.folder, self.facts, self.collection.looks, png)
+        self.taken(look, len(self.collection.views))
+        return look
+
+    def _look(self, joints_rad: np.ndarray[Any, Any]) -> tuple[Look, CameraImage | None]:
+        self._rest()
+        before = self.cell.robot.state()
+        try:
+            image = self.cell.camera.capture()
+        except CameraLost:
+            raise
+        except CameraError as error:
+            return Look(joints_rad, None, str(error)), None
+        after = self.cell.robot.state()
+        if np.abs(after.joints_rad - before.joints_rad).max() > _STILL_RAD:
+            problem = "The arm moved while the image was taken; keep away from it, and let it come to rest."
+            return Look(joints_rad, None, problem), image
+        board = self.collection.board
+        name = f"view {len(self.collection.looks) + 1}"
+        picture = gray(image.color)
+        try:
+            seen = detect_board(picture, board, self.lens)
+        except StageError as error:
+            return Look(joints_rad, None, str(error)), image
+        _refuse_other_squares(measured_square_m(seen, board, self.lens, image.depth_m), board)
+        poor = why_unusable(seen, picture, board, self.lens, after.T_base_flange, self.collection.views)
+        return Look(joints_rad, board_view(name, after.T_base_flange, seen), poor or ""), image
+
+    def _rest(self) -> None:
+        """Wait until the arm and what hangs at it are still."""
+        deadline_s = time.monotonic() + _REST_S
+        while np.abs(self.cell.robot.state().joint_speeds_rad_s).max() > 1e-3:
+            if time.monotonic() > deadline_s:
+                break
+            time.sleep(0.01)
+        if self.cell.settings.robot.is_real:
+            time.sleep(self.cell.settings.scan.settle_s)
+
+
+@contextmanager
+def capturing(
+    cell_file: Path,
+    settings: CellSettings,
+    board: BoardSpec,
+    step: str,
+    facts: dict[str, Any],
+    reporter: Reporter,
+    operator: ScanOperator | None,
+    taken: LookTaken,
+    n_wanted: int,
+) -> Iterator[Capture]:
+    """Connect a cell that shall look at the board.
+
+    Raises:
+        PoursightError: it cannot be connected, or nobody is there to confirm what a real arm does.
+    """
+    if settings.robot.kind == "replay":
+        raise InputError(f"The {settings.name} plays back a recorded scan; it cannot be calibrated.")
+    if settings.robot.is_real and operator is None:
+        raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
+    with ExitStack() as stack:
+        cell = stack.enter_context(connected(open_calibration_cell(settings, board), operator))
+        first = cell.camera.capture()
+        folder = new_run(cell_file, step)
+        moving: Moving = PlainMoving(cell, reporter)
+        if settings.robot.is_real:
+            assert operator is not None, "refused above"
+            log = stack.enter_context(RunLog(folder / "motion"))
+            name = cell.robot.name
+            moving = WatchedMoving(cell, log, reporter, lambda route: operator.confirm_route(route, name))
+        set_up = settings.simulation.set_up
+        lens = Lens(first.intrinsics) if set_up is None else set_up.lens(first.intrinsics)
+        height, width = first.depth_m.shape
+        collection = Collection(
+            cell.scene, board, first.intrinsics, (width, height), settings.camera.pose,
+            np.array(settings.robot.home_rad), settings.camera.min_range_m, n_wanted,
+        )  # fmt: skip
+        devices = {"robot": cell.robot.name, "camera": cell.camera.name}
+        yield Capture(cell, folder, facts | devices, collection, lens, moving, reporter, taken)
+
+
+def find_board(capture: Capture) -> None:
+    """See the board once: from where the arm is, or, in simulation, from the scan's views.
+
+    Raises:
+        StageError: it is not in sight; a person has to guide the arm.
+    """
+    look = capture.look_here()
+    if look.view is not None:
+        return
+    settings = capture.cell.settings
+    if settings.robot.is_real:
+        raise StageError(
+            f"{look.problem} Guide the arm by hand to where the camera sees the whole board, and begin again."
+        )
+    for joints in settings.scan.views_rad:
+        try:
+            capture.moving.go(PlannedView("towards the board", joints))
+        except MotionError:
+            continue
+        if capture.look_here().view is not None:
+            return
+    raise StageError(f"The board is in sight from none of the scan's views ({look.problem})")
+
+
+def take_rounds(capture: Capture) -> None:
+    """Go through rounds of proposed poses until there are enough usable views.
+
+    Raises:
+        PoursightError: see `Capture.go_and_look`.
+    """
+    n_round = 0
+    while True:
+        capture.reporter.raise_if_cancelled()
+        here = np.array(capture.cell.robot.state().joints_rad)
+        poses = capture.collection.next_poses(here, n_round)
+        if not poses:
+            return
+        capture.go_and_look(poses)
+        n_round += 1
+
+
+def _refuse_other_squares(square_m: float | None, board: BoardSpec) -> None:
+    if square_m is not None and abs(square_m / board.square_m - 1) > _DEPTH_TOLERANCE:
+        raise StageError(
+            f"The camera's depth says that the squares of the board are {square_m * 1000:.1f} mm, not "
+            f"{board.square_m * 1000:.1f} mm; measure them again, and enter what you measured."
+        )

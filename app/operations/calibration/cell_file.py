@@ -1,0 +1,133 @@
+"""Cell files: made anew, found by name, and changed with their comments kept."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from platformdirs import user_documents_path
+
+from app.library.places import slug
+from core.errors import InputError
+from core.files import read_content, reason, write_whole
+from core.geometry import FloatArray
+from core.session import explained
+from hardware.cell.settings import CELL_FOLDER, SIMULATED_CELL, CellSettings, read_cell
+from hardware.simulation.set_up import random_camera_pose
+
+CELLS_VARIABLE = "POURSIGHT_CELLS"
+"""The environment variable that names another folder."""
+_REAL_CELL = CELL_FOLDER / "ur5_example.toml"
+_BOARD_OFF_PLATFORM_M = (0.03, -0.02, 0.004)
+_DIGITS = 9
+
+
+def cells_folder() -> Path:
+    """Return the folder that holds the cells' files; it need not exist yet."""
+    chosen = os.environ.get(CELLS_VARIABLE)
+    return Path(chosen).absolute() if chosen else user_documents_path() / "Poursight" / "cells"
+
+
+def cell_path(name: str) -> Path:
+    """Return the file of a cell: the path itself if it is one, else that of this name.
+
+    Raises:
+        InputError: there is no such file.
+    """
+    given = Path(name)
+    is_path = given.suffix == ".toml" or given.is_file()
+    path = given if is_path else cells_folder() / f"{slug(name)}.toml"
+    if not path.is_file():
+        raise InputError(f"There is no cell file {path}; make one, or name one that there is.")
+    return path
+
+
+def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None = None) -> Path:
+    """Write a new cell's file, to be completed step by step; return its path.
+
+    A simulated cell's camera really hangs up to 20 mm and 10 degrees beside where the file believes.
+
+    Args:
+        name: of the cell.
+        is_simulated: whether it has no real devices.
+        seed: of a simulated cell's truth.
+        address: of a real arm's controller.
+
+    Raises:
+        InputError: the name is empty or taken.
+        SessionError: the file cannot be written.
+    """
+    if not re.search(r"\w", name):
+        raise InputError("A cell needs a name with letters or digits; type one.")
+    path = cells_folder() / f"{slug(name)}.toml"
+    if path.exists():
+        raise InputError(f"There is a cell {path} already; choose another name.")
+    template = SIMULATED_CELL if is_simulated else _REAL_CELL
+    document = tomlkit.parse(read_content(template).decode("utf-8"))
+    document["name"] = name
+    if address is not None:
+        _table(document, "robot")["address"] = address
+    if is_simulated:
+        _table(document, "simulation")["set_up"] = _simulated_set_up(read_cell(template), seed)
+    content = tomlkit.dumps(document)
+    with explained(path.parent):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, content)
+    return path
+
+
+def write_hand_eye(path: Path, T_flange_camera: FloatArray) -> None:
+    """Put another hand-eye pose (4, 4) into a cell's file; all else in it stays, comments too.
+
+    Raises:
+        InputError: the file cannot be read, or would be no cell any more; it stays as it was.
+        SessionError: it cannot be written; it stays as it was.
+    """
+
+    def change(document: tomlkit.TOMLDocument) -> None:
+        _table(document, "camera")["T_flange_camera"] = _matrix(T_flange_camera)
+
+    _changed(path, change)
+
+
+def _changed(path: Path, change: Callable[[tomlkit.TOMLDocument], None]) -> None:
+    before = read_content(path)
+    try:
+        document = tomlkit.parse(before.decode("utf-8"))
+        change(document)
+    except (ValueError, LookupError, TypeError) as error:
+        raise InputError(f"The cell file {path} cannot be changed ({reason(error)}); correct it.") from error
+    with explained(path.parent):
+        write_whole(path, tomlkit.dumps(document))
+    try:
+        read_cell(path)
+    except InputError:
+        write_whole(path, before)
+        raise
+
+
+def _table(document: tomlkit.TOMLDocument, name: str) -> Any:
+    return document[name]
+
+
+def _matrix(T: FloatArray) -> Any:
+    """A pose (4, 4) as an array of four lines."""
+    rows = tomlkit.array()
+    for row in T.round(_DIGITS).tolist():
+        rows.append(tomlkit.item([value + 0.0 for value in row]))
+    rows.multiline(True)
+    return rows
+
+
+def _simulated_set_up(settings: CellSettings, seed: int) -> Any:
+    table = tomlkit.table()
+    table.add(tomlkit.comment("What this simulated cell really is, which its calibration has to find."))
+    table["T_flange_camera"] = _matrix(random_camera_pose(settings.camera.pose, seed))
+    middle_m = settings.place.platform_center_m + _BOARD_OFF_PLATFORM_M
+    table["board_middle_m"] = [round(value, 6) for value in middle_m.tolist()]
+    table["seed"] = seed
+    return table

@@ -1,0 +1,1 @@
+"""Calibrating where the camera hangs at the arm: board, views, fit, accuracy, and poses worth taking."""

@@ -1,0 +1,191 @@
+import numpy as np
+import pytest
+
+from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
+from app.operations.calibration.check import check_cell
+from app.operations.calibration.hand_eye import calibrate_cell, undo_calibration
+from app.operations.calibration.provenance import HAND_EYE, read_looks, runs
+from app.operations.calibration.steps import StepState, enter_board, steps, undo_board
+from core.calibration.board import BoardSpec
+from core.calibration.rig import exp_pose, log_pose
+from core.errors import Cancelled, InputError, StageError
+from core.geometry import invert_pose
+from core.progress import Reporter
+from hardware.cameras.simulated_board import SimulatedBoardCamera
+from hardware.cell import SIMULATED_CELL, read_cell
+
+N_VIEWS = 10
+
+
+@pytest.fixture(autouse=True)
+def cells(tmp_path, monkeypatch):
+    monkeypatch.setenv("POURSIGHT_CELLS", str(tmp_path / "cells"))
+    return tmp_path / "cells"
+
+
+def measured_cell(name="bench", seed=0, **set_up):
+    path = new_cell(name, is_simulated=True, seed=seed)
+    for key, value in set_up.items():
+        path.write_text(path.read_text() + f"{key} = {value}\n")
+    enter_board(path, BoardSpec(), "a4", 0.030)
+    return path
+
+
+def states(path):
+    return {step.name: step.state for step in steps(path)}
+
+
+def calibrated(path, reporter=None, **options):
+    return calibrate_cell(path, reporter or Reporter(), None, n_views=N_VIEWS, **options)
+
+
+def comments(path):
+    return [line.split("#")[1] for line in path.read_text().splitlines() if "#" in line]
+
+
+@pytest.mark.system
+def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
+    path = new_cell("Bench one", is_simulated=True, seed=3)
+    assert path == cells / "bench-one.toml" == cell_path("bench one")
+    assert set(states(path).values()) == {StepState.OPEN}
+    with pytest.raises(InputError, match="No calibration board is entered"):
+        calibrated(path)
+    pdf = enter_board(path, BoardSpec(), "letter", None)
+    assert pdf.read_bytes().startswith(b"%PDF")
+    with pytest.raises(InputError, match="not measured"):
+        calibrated(path)
+    enter_board(path, BoardSpec(), "letter", 0.030)
+
+    before = read_cell(path)
+    found = calibrated(path)
+    after = read_cell(path)
+    truth = after.simulation.set_up.camera_pose
+    error = log_pose(invert_pose(after.camera.pose) @ truth)
+    assert np.linalg.norm(error[3:]) < max(1.5 * found.bounds.position_m, 0.001)
+    assert np.linalg.norm(log_pose(invert_pose(before.camera.pose) @ truth)[3:]) > 0.005
+    assert comments(SIMULATED_CELL) == comments(path)[: len(comments(SIMULATED_CELL))]
+    assert after.model_copy(update={"camera": before.camera}) == before
+    assert states(path) == {"board": StepState.DONE, "hand-eye": StepState.DONE, "check": StepState.OPEN}
+    _, looks = read_looks(found.folder)
+    assert len(list(found.folder.glob("view-*.png"))) == sum(look.view is not None for look in looks)
+
+    checked = check_cell(path, Reporter(), None, lambda: None)
+    assert checked.agreement.is_good and checked.agreement.rms_m < 0.002
+    assert states(path)["check"] is StepState.DONE
+
+    enter_board(path, BoardSpec(), "a4", 0.0299)
+    assert states(path) == {"board": StepState.DONE, "hand-eye": StepState.STALE, "check": StepState.STALE}
+    undo_board(path)
+    undo_calibration(path)
+    assert np.allclose(read_cell(path).camera.pose, before.camera.pose, atol=1e-8)
+    assert states(path)["hand-eye"] is StepState.OPEN and states(path)["check"] is StepState.STALE
+    with pytest.raises(InputError, match="there is none"):
+        undo_calibration(path)
+
+
+@pytest.mark.system
+def test_an_interrupted_calibration_goes_on_with_what_was_taken():
+    path = measured_cell(seed=1)
+    reporter = Reporter()
+
+    def stop_after_four(look, n_usable):
+        if n_usable == 4:
+            reporter.cancel()
+
+    before = path.read_bytes()
+    with pytest.raises(Cancelled):
+        calibrated(path, reporter, taken=stop_after_four)
+    assert path.read_bytes() == before
+    n_new = []
+    found = calibrated(path, taken=lambda look, n_usable: n_new.append(n_usable))
+    assert n_new[0] == 5
+    assert found.n_views == N_VIEWS
+
+
+def test_wrongly_entered_squares_are_refused_at_the_first_look():
+    path = measured_cell(square_m=0.026)
+    before = path.read_bytes()
+    with pytest.raises(StageError, match=r"squares of the board are 2[56]\.\d mm, not 30.0 mm"):
+        calibrated(path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.system
+def test_a_board_that_moves_meanwhile_is_noticed_and_nothing_is_lost(monkeypatch):
+    path = measured_cell(seed=2)
+    before = path.read_bytes()
+    plain = SimulatedBoardCamera.capture
+
+    def pushed_once(camera):
+        if camera._n_shots == 7:
+            camera.T_base_board = camera.T_base_board @ exp_pose(np.array([0, 0, 0.03, 0.01, 0, 0]))
+        return plain(camera)
+
+    monkeypatch.setattr(SimulatedBoardCamera, "capture", pushed_once)
+    with pytest.raises(StageError, match="The board moved between view"):
+        calibrated(path)
+    assert path.read_bytes() == before
+    _, looks = read_looks(runs(path, HAND_EYE)[-1])
+    assert sum(look.is_used for look in looks) >= N_VIEWS
+
+
+@pytest.mark.system
+def test_a_check_finds_a_camera_that_was_bumped(monkeypatch):
+    path = measured_cell(seed=4)
+    calibrated(path)
+    settings = read_cell(path)
+    set_up = settings.simulation.set_up
+    bumped = set_up.camera_pose @ exp_pose(np.array([0.02, 0, 0, 0.004, 0, 0]))
+    rows = tuple(tuple(row) for row in bumped.tolist())
+    plain = SimulatedBoardCamera.__init__
+
+    def bump(camera, world, robot, arm, truth, board, noise):
+        plain(camera, world, robot, arm, truth.model_copy(update={"T_flange_camera": rows}), board, noise)
+
+    monkeypatch.setattr(SimulatedBoardCamera, "__init__", bump)
+    checked = check_cell(path, Reporter(), None, lambda: None)
+    assert not checked.agreement.is_good
+    assert states(path)["check"] is StepState.FAILED
+
+
+def test_a_check_needs_a_calibration():
+    with pytest.raises(InputError, match="not one that was calibrated here"):
+        check_cell(measured_cell(), Reporter(), None, lambda: None)
+
+
+def test_another_hand_eye_pose_in_the_file_changes_nothing_else(tmp_path):
+    path = tmp_path / "by hand.toml"
+    path.write_text(SIMULATED_CELL.read_text().replace("[camera]", "[camera]  # mine"))
+    pose = read_cell(path).camera.pose @ exp_pose(np.array([0.1, 0, 0, 0.01, 0, 0]))
+    write_hand_eye(path, pose)
+    assert np.allclose(read_cell(path).camera.pose, pose, atol=1e-8)
+    assert "[camera]  # mine" in path.read_text()
+    assert comments(path)[-1] == comments(SIMULATED_CELL)[-1]
+
+
+def test_a_file_that_is_no_cell_stays_as_it_is(tmp_path):
+    path = tmp_path / "broken.toml"
+    path.write_text("name = 'x'\n")
+    with pytest.raises(InputError, match="cannot be changed"):
+        write_hand_eye(path, np.eye(4))
+    assert path.read_text() == "name = 'x'\n"
+
+
+@pytest.mark.parametrize("name", ["", "  ", "?!"])
+def test_a_cell_needs_a_name(name):
+    with pytest.raises(InputError, match="needs a name"):
+        new_cell(name, is_simulated=True)
+
+
+def test_a_cell_is_never_overwritten():
+    new_cell("bench", is_simulated=False, address="192.168.0.7")
+    assert read_cell(cell_path("bench")).robot.address == "192.168.0.7"
+    with pytest.raises(InputError, match="already"):
+        new_cell("Bench", is_simulated=True)
+
+
+def test_damaged_records_are_named(cells):
+    path = measured_cell()
+    (cells / "bench.calibration" / "board.json").write_text('{"boards": [{"board": {"columns": 1}}]}')
+    with pytest.raises(Exception, match=r"board\.json is damaged"):
+        steps(path)
