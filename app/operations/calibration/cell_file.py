@@ -16,7 +16,8 @@ from core.errors import InputError
 from core.files import read_content, reason, write_whole
 from core.geometry import FloatArray
 from core.session import explained
-from hardware.cell.settings import CELL_FOLDER, SIMULATED_CELL, CellSettings, read_cell
+from hardware.cell.reading import CELL_FOLDER, SIMULATED_CELL, read_cell
+from hardware.cell.settings import CellSettings
 from hardware.simulation.set_up import random_camera_pose
 
 CELLS_VARIABLE = "POURSIGHT_CELLS"

@@ -34,8 +34,7 @@ from core.progress import Reporter
 from core.scan.model import Intrinsics
 from core.session import explained
 from hardware.cameras.simulated_board import SimulatedBoardCamera
-from hardware.cell import Cell
-from hardware.cell.settings import read_cell
+from hardware.cell import Cell, read_cell
 
 N_VIEWS = 6
 _MARGIN_PX = 25.0

@@ -37,7 +37,8 @@ from core.geometry import FloatArray, invert_pose
 from core.motion.kinematics import flange_pose
 from core.progress import Reporter
 from core.session import explained
-from hardware.cell.settings import ARMS, CellSettings, read_cell
+from hardware.cell.reading import read_cell
+from hardware.cell.settings import ARMS, CellSettings
 
 MOST_POURING_M = 0.003
 """A constant error of 3 mm and 1 degree survives reconstruction, one of 5 mm and 2 degrees does not."""

@@ -26,7 +26,7 @@ from core.calibration.printing import write_board_pdf
 from core.errors import InputError
 from core.files import reading
 from core.session import explained
-from hardware.cell.settings import read_cell
+from hardware.cell import read_cell
 
 BOARD = "board"
 
