@@ -100,7 +100,7 @@ def scan(
     """Show the route, ask, and scan an object from all sides; by default in the simulated cell."""
     from app.cli import session_commands
     from app.cli.parameters import Choices
-    from app.operations.scanning import ScanRequest
+    from app.operations.scan_run import ScanRequest
 
     request = ScanRequest(adaptive, tuple(retake or ()), restart)
     choices = Choices(preset, settings or [], seed)

@@ -19,7 +19,8 @@ from app.library.index import Library
 from app.library.places import sessions_folder
 from app.library.summary import PourScore, SessionSummary
 from app.operations import pouring
-from app.operations.scanning import ScanRequest, scan_object
+from app.operations.scan_run import ScanRequest
+from app.operations.scanning import scan_object
 from app.operations.session import bring_report_up_to_date
 from core.errors import InputError, NotAdvised
 from core.files import write_json

@@ -16,7 +16,8 @@ from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus, StopDo
 from app.jobs.messages import Event
 from app.jobs.scan_events import MeshGrown, ScanQuestion, ViewDone, ViewProgress, ViewsPlanned
 from app.jobs.service import JobReporter, Service
-from app.operations.scanning import Proposal, ScanObserver, ScanRequest, propose_views, scan_object
+from app.operations.scan_run import ScanObserver, ScanRequest
+from app.operations.scanning import Proposal, propose_views, scan_object
 from app.operations.session import SessionTask, working_on
 from core.errors import Cancelled, PoursightError
 from core.motion.kinematics import flange_pose

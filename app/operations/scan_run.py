@@ -2,25 +2,66 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
-from app.operations.arm import recover
+from app.operations.arm import ArmOperator, recover
 from core.errors import Cancelled
 from hardware.errors import RobotError
 
 if TYPE_CHECKING:
-    from app.operations.scanning import ScanObserver, ScanOperator, ScanRequest
     from core.progress import Reporter
     from hardware.cell import Cell
     from hardware.pouring.run_log import RunLog
     from hardware.scanning.moving import WatchedMoving
-    from hardware.scanning.procedure import ScanProcedure
+    from hardware.scanning.procedure import ScanControl, ScanProcedure, ViewsPlanned, ViewTaken
     from hardware.scanning.route import ScanRoute
     from hardware.scanning.store import ScanStore
     from hardware.scanning.views import ScanPlan
 
 FIRST_LOOK = "first look"
+
+
+@dataclass(frozen=True)
+class ScanRequest:
+    """What to do beyond the scan itself.
+
+    Attributes:
+        adaptive: take more views where the inside of an opening was not seen.
+        retake: names of views of the finished scan to take again.
+        restart: discard what an interrupted scan left.
+    """
+
+    adaptive: bool = False
+    retake: tuple[str, ...] = ()
+    restart: bool = False
+
+
+@dataclass(frozen=True)
+class ScanObserver:
+    """How somebody follows a scan while it is made.
+
+    Attributes:
+        control: pauses it.
+        opened: called with the cell; what it returns is entered while the cell's devices are connected.
+        planned: called with what `ScanProcedure` plans.
+        taken: called with each view.
+    """
+
+    control: ScanControl
+    opened: Callable[[Cell], AbstractContextManager[object]]
+    planned: ViewsPlanned
+    taken: ViewTaken
+
+
+class ScanOperator(ArmOperator, Protocol):
+    """The person at a real arm that scans."""
+
+    def confirm_route(self, route: ScanRoute, robot: str) -> None:
+        """Whether a robot shall go through the views as planned."""
+        ...
 
 
 @dataclass(frozen=True)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from app.library.session_folder import UNFINISHED_SCAN
-from app.operations.arm import ArmOperator, connected
-from app.operations.scan_run import ScanRun, Watch
+from app.operations.arm import connected
+from app.operations.scan_run import ScanObserver, ScanOperator, ScanRequest, ScanRun, Watch
 from core.errors import InputError, StageError
 from core.progress import Reporter
 
@@ -20,54 +19,12 @@ if TYPE_CHECKING:
     from core.mesh import TriangleMesh
     from core.pipeline.pipeline import Pipeline
     from hardware.cell import Cell, CellSettings
-    from hardware.scanning.procedure import ScanControl, ViewsPlanned, ViewTaken
-    from hardware.scanning.route import ScanRoute
     from hardware.scanning.store import ScanStore
 
 SCAN_RUNS_FOLDER = "scans"
 """Of a session: what a real arm did in each scan."""
 _WATCHED_SPEED_UP = 5.0
 """Whoever watches a simulated scan wants to see the arm move, but not for a minute."""
-
-
-@dataclass(frozen=True)
-class ScanRequest:
-    """What to do beyond the scan itself.
-
-    Attributes:
-        adaptive: take more views where the inside of an opening was not seen.
-        retake: names of views of the finished scan to take again.
-        restart: discard what an interrupted scan left.
-    """
-
-    adaptive: bool = False
-    retake: tuple[str, ...] = ()
-    restart: bool = False
-
-
-@dataclass(frozen=True)
-class ScanObserver:
-    """How somebody follows a scan while it is made.
-
-    Attributes:
-        control: pauses it.
-        opened: called with the cell; what it returns is entered while the cell's devices are connected.
-        planned: called with what `ScanProcedure` plans.
-        taken: called with each view.
-    """
-
-    control: ScanControl
-    opened: Callable[[Cell], AbstractContextManager[object]]
-    planned: ViewsPlanned
-    taken: ViewTaken
-
-
-class ScanOperator(ArmOperator, Protocol):
-    """The person at a real arm that scans."""
-
-    def confirm_route(self, route: ScanRoute, robot: str) -> None:
-        """Whether a robot shall go through the views as planned."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -87,7 +44,7 @@ def scan_object(
     pipeline: Pipeline,
     settings: CellSettings,
     source: str | None,
-    request: ScanRequest = ScanRequest(),
+    request: ScanRequest | None = None,
     observer: ScanObserver | None = None,
     operator: ScanOperator | None = None,
 ) -> None:
@@ -97,7 +54,7 @@ def scan_object(
         pipeline: of the session; its seed is that of a simulated cell.
         settings: the cell.
         source: for a simulated cell, a built-in object's name or a mesh file.
-        request: what to do beyond that.
+        request: what to do beyond that; by default nothing.
         observer: of whoever follows it; a simulated arm then moves where it would jump.
         operator: confirms what a real arm does; without one nothing real moves.
 
@@ -106,6 +63,7 @@ def scan_object(
     """
     from hardware.scanning.store import ScanStore
 
+    request = request or ScanRequest()
     is_replay = settings.camera.kind == "replay"
     if is_replay and (request.adaptive or request.retake):
         raise InputError(

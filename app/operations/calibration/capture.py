@@ -14,7 +14,7 @@ import numpy as np
 
 from app.operations.arm import connected
 from app.operations.calibration.provenance import new_run, write_looks
-from app.operations.scanning import ScanOperator
+from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Collection, Look
 from core.calibration.detection import detect_board, gray, measured_square_m

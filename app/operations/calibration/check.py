@@ -21,7 +21,7 @@ from app.operations.calibration.provenance import (
     versions,
     withdraw,
 )
-from app.operations.scanning import ScanOperator
+from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
 from core.calibration.checking import FEWEST_VIEWS, Agreement, check_agreement
 from core.calibration.hand_eye import HandEyeFit

@@ -22,7 +22,7 @@ from app.operations.calibration.provenance import (
     versions,
     withdraw,
 )
-from app.operations.scanning import ScanOperator
+from app.operations.scan_run import ScanOperator
 from core.calibration.accuracy import Bounds, HeldOut, bounds, hold_out
 from core.calibration.board import BoardSpec
 from core.calibration.diversity import diversity

@@ -13,7 +13,8 @@ from app.jobs.messages import Event, Failed, FailureKind, Finished, Progressed, 
 from app.jobs.scan_events import MeshGrown, ScanQuestion, ViewDone, ViewsPlanned
 from app.jobs.scan_work import ScanWork
 from app.library.session_folder import UNFINISHED_SCAN
-from app.operations.scanning import Proposal, ScanRequest, scan_object
+from app.operations.scan_run import ScanRequest
+from app.operations.scanning import Proposal, scan_object
 from app.operations.session import SessionTask, working_on
 from core.parameters import Parameters
 from core.progress import Reporter

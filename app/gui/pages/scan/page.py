@@ -18,7 +18,8 @@ from app.gui.pages.scan.views import ShownImages, ViewTable
 from app.gui.pages.scan.work import ScanJobs
 from app.gui.views.scene import PreparedMesh, prepare_mesh
 from app.jobs.scan_events import MeshGrown, ScanQuestion, ViewDone, ViewsPlanned
-from app.operations.scanning import Proposal, ScanRequest
+from app.operations.scan_run import ScanRequest
+from app.operations.scanning import Proposal
 from core.pipeline.freshness import Freshness
 
 _REAL_CELL_NAME = "object"

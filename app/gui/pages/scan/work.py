@@ -16,7 +16,7 @@ from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
 from app.library.places import new_session_folder
 from app.library.session_folder import UNFINISHED_SCAN, remove_if_empty
-from app.operations.scanning import ScanRequest
+from app.operations.scan_run import ScanRequest
 from app.operations.session import SessionTask
 from core.parameters import Parameters
 
