@@ -1,5 +1,6 @@
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
@@ -13,9 +14,12 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.pages.history.session_side import KINDS
+from core.colored_mesh import ColoredMesh
+from core.reconstruction.colors import ModelColors
+from core.reconstruction.result import Reconstruction
 from core.session import Session
 
-HTML, PDF, ZIP = KINDS
+HTML, PDF, ZIP, *_ = KINDS
 
 
 def names(page):
@@ -215,8 +219,24 @@ def test_sessions_made_in_the_meantime_are_there_when_the_page_is_shown_again(li
     assert button(page, "export_zip").isEnabled()
 
 
+def photograph(folder):
+    """Colour a session's model, as its pipeline does before a report."""
+    with Session.open(folder) as session:
+        mesh = Reconstruction.load(session.path / "reconstruction").mesh
+        digests = {stage: session.record(stage).digest for stage in ("scan", "reconstruction")}
+        with session.writing("colors", inputs=digests, parameters={}) as stage:
+            ModelColors(ColoredMesh(mesh, np.full(mesh.vertices_m.shape, 90, dtype=np.uint8))).save(stage)
+
+
+def test_a_model_without_colours_cannot_be_exported(library, make_page):
+    page = make_page()
+    assert not button(page, "export_ply").isEnabled()
+    assert not button(page, "export_glb").isEnabled()
+
+
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.key)
 def test_the_file_dialog_proposes_the_session_s_name(library, make_page, tmp_path, kind, monkeypatch):
+    photograph(library / "block")
     page = make_page()
     page._exports_to = tmp_path
     asked = []

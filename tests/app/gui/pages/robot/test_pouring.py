@@ -20,7 +20,7 @@ from core.imagination.amount.result import PlannedAmount
 from core.pipeline.session_view import SessionView
 from core.session.cups import Cup
 from core.session.pour_runs import pour_runs
-from hardware.cell.settings import CELL_FOLDER
+from hardware.cell.reading import CELL_FOLDER
 from hardware.simulation.ur_controller.identity import CONTROL_PORT
 from tests.awake import within
 
