@@ -114,8 +114,9 @@ def load_grid(session: Path) -> PourGrid:
     """
     view = SessionView.of(session)
     if view.verdict is not None and not view.verdict.is_open_container:
+        known = "is not known to be" if view.verdict.is_undecided else "is not"
         raise SessionError(
-            f"The object of {session} is not known to be an open container: it has no pours to compare with."
+            f"The object of {session} {known} an open container: there are no pours to compare with."
         )
     if view.grid is None:
         raise SessionError(f"The session {session} holds no imagined pours to compare with.")

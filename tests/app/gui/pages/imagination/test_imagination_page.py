@@ -53,7 +53,7 @@ def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened,
     page = opened(mug_session)
     found = page.content.containability
     verdict, capacity = text(page, "drop_verdict"), page.content.capacity
-    assert verdict.startswith(f"Open container: it holds {capacity.n_candies:.0f} candies")
+    assert verdict.startswith(f"Open container: level with its rim it holds {capacity.n_level:.0f} candies")
     assert text(page, "drop_reason").startswith(
         f"By Omega an open container: {found.n_in} of {found.n_drop} dropped candies stayed"
     )
