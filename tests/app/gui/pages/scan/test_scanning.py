@@ -121,7 +121,7 @@ def test_a_dropped_mesh_is_imported_into_a_session_of_its_own(
     assert [folder.name[11:] for folder in sessions.iterdir()] == ["my-cup"]
     assert headline(page) == "An imported mesh: its place in the cell is not known."
     assert details(page) == "Size: 114 x 80 x 97 mm."
-    assert page.left.view.scene.layers() == ("object", "views")
+    assert page.left.view.scene.layers() == ("object", "ground", "views")
     assert primary(page).text() == "Scan the mug"
     assert "new session" in text(page, "remark")
 
