@@ -297,12 +297,12 @@ class VerdictSide(SidePanel):
         capacity, retention = drop.capacity, drop.retention
         if capacity is None or retention is None:
             return []
-        held = self.tr("{n:.0f} candies, {ml:.0f} ml").format(n=capacity.n_level, ml=capacity.volume_ml)
+        held = self.tr("{n:.0f} candies, {ml:.0f} ml level").format(n=capacity.n_level, ml=capacity.volume_ml)
         water = self.tr("Filled from above until it overflowed, then perturbed. Water: {ml:.0f} ml.").format(
             ml=capacity.geometric_volume_ml
         )
         return [
-            Fact(self.tr("Holds, level with its rim"), held, f"{water} {capacity.remark}".strip()),
+            Fact(self.tr("Holds"), held, f"{water} {capacity.remark}".strip()),
             Fact(self.tr("Tilted"), self._tilted(retention), retention_sentence(retention)),
         ]
 
