@@ -45,6 +45,17 @@ class TriangleMesh:
         a, b, c = (self.vertices_m[self.faces[:, k]] for k in range(3))
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
+    @property
+    def vertex_normals(self) -> FloatArray:
+        """Unit normals (V, 3), outward, the adjacent faces' weighted by their area; zero without a face."""
+        a, b, c = (self.vertices_m[self.faces[:, k]] for k in range(3))
+        areas = np.cross(b - a, c - a)
+        normals = np.zeros_like(self.vertices_m)
+        for corner in range(3):
+            np.add.at(normals, self.faces[:, corner], areas)
+        unit: FloatArray = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+        return unit
+
     def translated(self, offset_m: FloatArray) -> TriangleMesh:
         """Return a copy moved by `offset_m` (3,)."""
         return TriangleMesh(self.vertices_m + offset_m, self.faces)

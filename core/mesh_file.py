@@ -15,7 +15,7 @@ import numpy as np
 
 from core.errors import InputError, Remedy, SessionError
 from core.files import is_file, read_content, reason
-from core.geometry import rotation_x
+from core.geometry import AnyArray, rotation_x
 from core.mesh import TriangleMesh
 from core.mesh_topology import join, topology, weld
 from core.progress import Reporter
@@ -94,6 +94,27 @@ def write_ply(path: Path, mesh: TriangleMesh) -> None:
     faces["count"], faces["corners"] = 3, mesh.faces
     header = _PLY_HEADER.format(vertices=len(mesh.vertices_m), faces=len(mesh.faces)).encode()
     path.write_bytes(header + mesh.vertices_m.astype("<f8").tobytes() + faces.tobytes())
+
+
+def colored_mesh_content(mesh: TriangleMesh, rgb: AnyArray, ending: str) -> bytes:
+    """Return a PLY or GLB file (by its ending) of a mesh with colours (V, 3), uint8 in sRGB; GLB has y up."""
+    import trimesh
+
+    is_glb = ending == ".glb"
+    places_m = mesh.vertices_m @ rotation_x(-np.pi / 2).T if is_glb else mesh.vertices_m
+    colors = _linear(rgb) if is_glb else rgb
+    colored = trimesh.Trimesh(places_m, mesh.faces, vertex_colors=colors, process=False)
+    content = colored.export(file_type=ending[1:])
+    assert isinstance(content, bytes), "these two formats are binary"
+    return content
+
+
+def _linear(rgb: AnyArray) -> AnyArray:
+    """Colours as glTF wants them: proportional to light, not to what a screen is told (IEC 61966-2-1)."""
+    share = rgb / 255
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    rounded: AnyArray = np.rint(255 * linear).astype(np.uint8)
+    return rounded
 
 
 def read_ply(path: Path) -> TriangleMesh:

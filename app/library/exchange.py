@@ -73,17 +73,17 @@ def export_model(session: Path, target: Path, overwrite: bool = False) -> None:
         InputError: another ending, or the target cannot be written, or exists and is not to be overwritten.
         SessionError: the session has no coloured model.
     """
-    from core.reconstruction.colors import MODEL_FILE, ModelColors  # brings Pillow along
+    from core.mesh_file import colored_mesh_content, read_ply
+    from core.reconstruction.colors import COLORS_FILE, ModelColors  # brings Pillow along
 
-    if not (session / "colors" / MODEL_FILE).is_file():
-        raise SessionError(f"{session} holds no coloured model; reconstruct its scan.", Remedy.RUN_AGAIN)
-    model = ModelColors.load(session / "colors").model
-    writers = {".ply": model.write_ply, ".glb": model.write_glb}
-    writer = writers.get(target.suffix.lower())
-    if writer is None:
+    ending = target.suffix.lower()
+    if ending not in (".ply", ".glb"):
         raise InputError(f"{target} cannot be written: models are written as .ply or .glb.")
+    if not (session / "colors" / COLORS_FILE).is_file():
+        raise SessionError(f"{session} holds no coloured model; reconstruct its scan.", Remedy.RUN_AGAIN)
+    rgb, mesh = ModelColors.load(session / "colors").rgb, read_ply(session / "reconstruction" / "mesh.ply")
     with _written_whole(target, overwrite) as unfinished:
-        writer(unfinished)
+        unfinished.write_bytes(colored_mesh_content(mesh, rgb, ending))
 
 
 def export_pdf(

@@ -68,7 +68,7 @@ def make_thumbnail(session: Path) -> Path | None:
 
 def _source(session: Path, records: Mapping[str, StageRecord]) -> Path | None:
     if "colors" in records:
-        return session / "colors" / "model.ply"
+        return session / "colors" / "colors.npz"
     if "evidence" in records and _END_STILL in records["evidence"].files:
         return session / "evidence" / _END_STILL
     if "scan" in records:
@@ -80,15 +80,15 @@ def _source(session: Path, records: Mapping[str, StageRecord]) -> Path | None:
 def _draw(source: Path) -> Image:
     from PIL import Image
 
-    if source.suffix == ".ply":
+    if source.suffix in (".ply", ".npz"):
         from app.library.shading import shaded_picture
         from core.mesh_file import read_ply
         from core.reconstruction.colors import ModelColors
 
-        if source.parent.name == "colors":
-            model = ModelColors.load(source.parent).model
-            return shaded_picture(model.mesh, SIZE_PX, rgb=model.rgb)
-        return shaded_picture(read_ply(source), SIZE_PX)
+        if source.suffix == ".ply":
+            return shaded_picture(read_ply(source), SIZE_PX)
+        mesh = read_ply(source.parents[1] / "reconstruction" / "mesh.ply")
+        return shaded_picture(mesh, SIZE_PX, rgb=ModelColors.load(source.parent).rgb)
     try:
         with Image.open(BytesIO(read_content(source))) as picture:
             return _cropped(picture.convert("RGB"), source)

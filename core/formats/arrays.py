@@ -40,6 +40,7 @@ _QUALITY: _Spec = {
     "frontier_m": ("float", ("N", 3)),
     "region": ("int", ("M", 3)),
 }
+_COLORS: _Spec = {"rgb": ("int", ("V", 3))}
 _TABLE: _Spec = {
     "in_object": ("bool", ("N",)),
     "in_cup": ("bool", ("N",)),
@@ -56,6 +57,7 @@ _SPECS: Mapping[tuple[str, str], _Spec] = {
     ("collision", "collision.npz"): _COLLISION,
     ("mesh", "collision.npz"): _COLLISION,
     ("quality", "quality.npz"): _QUALITY,
+    ("colors", "colors.npz"): _COLORS,
     ("pouring", "pours.npz"): {},
     ("table", "outcome.npz"): _TABLE,
 }

@@ -163,7 +163,7 @@ def _mm(length_m: float) -> str:
 
 def count_views(mesh: TriangleMesh, scan: Scan) -> IntArray:
     """In how many views each vertex (V,) faces the camera and has the depth that was measured there."""
-    normals = _vertex_normals(mesh)
+    normals = mesh.vertex_normals
     counts = np.zeros(len(mesh.vertices_m), dtype=np.int64)
     for frame in scan.frames:
         counts += _seen_in(frame, scan, mesh.vertices_m, normals)
@@ -198,12 +198,3 @@ def _seen_in(frame: RgbdFrame, scan: Scan, points_m: FloatArray, normals: FloatA
 def _face_crosses(mesh: TriangleMesh) -> FloatArray:
     a, b, c = (mesh.vertices_m[mesh.faces[:, k]] for k in range(3))
     return np.cross(b - a, c - a)
-
-
-def _vertex_normals(mesh: TriangleMesh) -> FloatArray:
-    """Sums (V, 3) of the normals of the faces around, weighted by area; only their direction matters here."""
-    normals = np.zeros_like(mesh.vertices_m)
-    crosses = _face_crosses(mesh)
-    for corner in range(3):
-        np.add.at(normals, mesh.faces[:, corner], crosses)
-    return normals

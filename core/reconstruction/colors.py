@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from core.colored_mesh import ColoredMesh
+from core.files import read_arrays, write_arrays
 from core.geometry import AnyArray, BoolArray, FloatArray, invert_pose, transform_points
 from core.mesh import TriangleMesh
 from core.scan.model import Intrinsics, RgbdFrame, Scan
 
-MODEL_FILE = "model.ply"
+COLORS_FILE = "colors.npz"
 _LEAST_COSINE = 0.2
 """Of the line of sight against the normal; at less a pixel is smeared over the surface."""
 _CELL_PX = 3
@@ -38,17 +38,17 @@ _FILL_ROUNDS = 60
 
 @dataclass(frozen=True, eq=False)
 class ModelColors:
-    """The surface with its photographed colours.
+    """The photographed colours of the reconstructed surface.
 
     Attributes:
-        model: the mesh with a colour a vertex.
+        rgb: (V, 3) uint8, sRGB, of each vertex.
     """
 
-    model: ColoredMesh
+    rgb: npt.NDArray[np.uint8]
 
     def save(self, folder: Path) -> None:
-        """Write `model.ply` into an existing folder."""
-        self.model.write_ply(folder / MODEL_FILE)
+        """Write `colors.npz` into an existing folder."""
+        write_arrays(folder / COLORS_FILE, rgb=self.rgb)
 
     @staticmethod
     def load(folder: Path) -> ModelColors:
@@ -57,19 +57,19 @@ class ModelColors:
         Raises:
             SessionError: the file is missing or damaged.
         """
-        return ModelColors(ColoredMesh.read_ply(folder / MODEL_FILE))
+        return ModelColors(read_arrays(folder / COLORS_FILE)["rgb"])
 
 
 def photographed(mesh: TriangleMesh, scan: Scan) -> ModelColors:
     """Colour a surface from the views of a scan, whose poses are those it was reconstructed with."""
-    normals = _vertex_normals(mesh)
+    normals = mesh.vertex_normals
     seen = [_seen_by(frame, scan.intrinsics, mesh, normals) for frame in scan.frames]
     n = len(mesh.vertices_m)
     weights = np.array([weight for weight, _ in seen]).reshape(-1, n)
     colors = np.array([color for _, color in seen]).reshape(-1, n, 3)
     fused = _agreed(colors, weights)
     filled = _filled(fused, weights.sum(axis=0) > 0, mesh.faces)
-    return ModelColors(ColoredMesh(mesh, np.rint(255 * np.clip(filled, 0, 1)).astype(np.uint8)))
+    return ModelColors(np.rint(255 * np.clip(filled, 0, 1)).astype(np.uint8))
 
 
 def _seen_by(
@@ -157,14 +157,3 @@ def _filled(colors: FloatArray, is_known: BoolArray, faces: AnyArray) -> FloatAr
     lonely = known == 0
     filled[lonely] = filled[~lonely].mean(axis=0) if (~lonely).any() else _GREY
     return filled
-
-
-def _vertex_normals(mesh: TriangleMesh) -> FloatArray:
-    """Unit normals (V, 3), outward, the faces' weighted by their area."""
-    a, b, c = (mesh.vertices_m[mesh.faces[:, k]] for k in range(3))
-    area = np.cross(b - a, c - a)
-    normals = np.zeros_like(mesh.vertices_m)
-    for k in range(3):
-        np.add.at(normals, mesh.faces[:, k], area)
-    unit: FloatArray = normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-    return unit

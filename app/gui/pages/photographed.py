@@ -19,12 +19,12 @@ def in_colors(body: PreparedMesh, mesh: TriangleMesh, view: SessionView) -> Prep
     """Return a body, prepared from a mesh, in the colours of the session's images if these are its."""
     from core.reconstruction.colors import ModelColors
 
-    if view.session.record("colors") is None:
+    if "colors" not in view.records:
         return body
     try:
-        model = ModelColors.load(view.session.folder("colors")).model
+        rgb = ModelColors.load(view.session.folder("colors")).rgb
     except SessionError:
         return body  # without them it is as good, only grey
-    if not np.array_equal(model.mesh.vertices_m, mesh.vertices_m):
+    if len(rgb) != len(mesh.vertices_m):
         return body
-    return replace(body, rgb=(model.rgb / 255).astype(np.float32))
+    return replace(body, rgb=(rgb / 255).astype(np.float32))

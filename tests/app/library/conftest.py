@@ -20,9 +20,10 @@ from core.imagination.rendering.evidence import Evidence
 from core.imagination.results import Drop, Footprint, PourChoice, PourGrid
 from core.imagination.risk import Tries
 from core.mesh import TriangleMesh
-from core.mesh_file import write_ply
+from core.mesh_file import read_ply, write_ply
 from core.motion.pour.feasibility import PourFeasibility, PourMotions
 from core.parameters import apply_settings, load_preset
+from core.reconstruction.colors import ModelColors
 from core.session import Session
 from core.session.pour_runs import Outcome, next_run_folder, write_outcome
 from core.stages import stage
@@ -95,6 +96,12 @@ class SessionMaker:
         if spilled is not None:
             write_outcome(run, Outcome(60, spilled, "", is_simulated=False, facts={}))
         return run
+
+    def photograph(self, folder: Path) -> None:
+        with Session.open(folder) as session:
+            mesh = read_ply(session.path / "reconstruction" / "mesh.ply")
+            colors = ModelColors(np.full(mesh.vertices_m.shape, 90, dtype=np.uint8))
+            self._stage(session, "colors", ("scan", "reconstruction"), colors.save)
 
     def report(self, folder: Path) -> Path:
         (folder / "report.html").write_text(REPORT)

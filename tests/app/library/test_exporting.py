@@ -9,8 +9,9 @@ from base64 import b64encode
 import pytest
 from PIL import ImageFile
 
-from app.library.exchange import export_html, export_pdf, export_zip, pdf_job, report_is_current
+from app.library.exchange import export_html, export_model, export_pdf, export_zip, pdf_job, report_is_current
 from core.errors import Cancelled, InputError, SessionError, StageError
+from core.mesh_file import read_mesh, read_ply
 from core.progress import Reporter
 from core.workers import WorkerPool
 
@@ -32,6 +33,25 @@ def names(target):
 def test_html_is_the_report(session, tmp_path):
     export_html(session, tmp_path / "a.html")
     assert (tmp_path / "a.html").read_bytes() == (session / "report.html").read_bytes()
+
+
+@pytest.mark.parametrize("ending", [".ply", ".glb"])
+def test_a_coloured_model_goes_out_whole_or_not_at_all(session, make_session, tmp_path, ending):
+    target = tmp_path / f"mug{ending}"
+    with pytest.raises(SessionError, match="no coloured model"):
+        export_model(session, target)
+    make_session.photograph(session)
+    export_model(session, target)
+    mesh = read_mesh(target, Reporter())
+    own = read_ply(session / "reconstruction" / "mesh.ply")
+    assert mesh.volume_m3 == pytest.approx(own.volume_m3, rel=1e-4)
+    assert mesh.aabb_max_m == pytest.approx(own.aabb_max_m, abs=1e-6)
+    before = target.read_bytes()
+    with pytest.raises(InputError, match="exists"):
+        export_model(session, target)
+    assert target.read_bytes() == before
+    with pytest.raises(InputError, match=r"\.ply or \.glb"):
+        export_model(session, tmp_path / "mug.obj")
 
 
 def test_zip_holds_every_file_but_hidden_ones(session, tmp_path):

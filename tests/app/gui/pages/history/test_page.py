@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.pages.history.session_side import KINDS
-from core.colored_mesh import ColoredMesh
 from core.reconstruction.colors import ModelColors
 from core.reconstruction.result import Reconstruction
 from core.session import Session
@@ -225,7 +224,7 @@ def photograph(folder):
         mesh = Reconstruction.load(session.path / "reconstruction").mesh
         digests = {stage: session.record(stage).digest for stage in ("scan", "reconstruction")}
         with session.writing("colors", inputs=digests, parameters={}) as stage:
-            ModelColors(ColoredMesh(mesh, np.full(mesh.vertices_m.shape, 90, dtype=np.uint8))).save(stage)
+            ModelColors(np.full(mesh.vertices_m.shape, 90, dtype=np.uint8)).save(stage)
 
 
 def test_a_model_without_colours_cannot_be_exported(library, make_page):
