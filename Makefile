@@ -1,6 +1,6 @@
 # `make run` and `make test` are all a newcomer needs; both prepare .venv first.
 QUICK = tests/core/parameters tests/core/session tests/core/evaluation tests/core/report tests/core/scan \
-	tests/core/imagination/amount tests/core/imagination/test_results.py tests/core/imagination/test_race.py \
+	tests/core/imagination/amount tests/core/imagination/test_results.py tests/core/imagination/risk/test_race.py \
 	tests/core/imagination/test_particle_shape.py tests/core/motion/test_kinematics.py tests/core/test_stages.py \
 	tests/core/test_mesh.py tests/core/test_mesh_file.py tests/app/operations/test_pouring.py \
 	tests/app/cli/test_remedies.py tests/app/cli/test_parameters.py tests/app/library/test_summary.py \
@@ -9,7 +9,7 @@ OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS
 	.venv/bin/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye pour-plans pour-faults pour-soak fuzz scene-speed window-start window-tour window-kills screenshots clean
+.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye drift pour-plans pour-faults pour-soak fuzz scene-speed stop-latency window-start window-tour window-kills screenshots clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -93,6 +93,9 @@ looking-again: setup
 hand-eye: setup
 	.venv/bin/python -m tests.benchmarks.hand_eye
 
+drift: setup
+	.venv/bin/python -m tests.benchmarks.drift
+
 pour-plans: setup
 	.venv/bin/python -m tests.benchmarks.pour_plans
 
@@ -107,6 +110,9 @@ scene-speed: setup-test
 
 fuzz: setup-test
 	.venv/bin/python -m tests.fuzz.fuzzing
+
+stop-latency: setup-test
+	$(SCREEN) .venv/bin/python -m tests.benchmarks.stop_latency
 
 window-start: setup-test
 	$(SCREEN) .venv/bin/python -m tests.benchmarks.window_start

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from core.errors import Remedy, SessionError
+from core.errors import InputError, Remedy, SessionError
 from core.formats import MADE_BY_REPORT, check_arrays, check_table, excerpt, kind_of, parse_json
 from core.geometry import AnyArray
 
@@ -34,6 +34,19 @@ def write_whole(path: Path, content: str | bytes) -> None:
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those above it, unless it is there.
+
+    Raises:
+        InputError: there is a file of that name.
+        OSError: the system refuses.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (FileExistsError, NotADirectoryError) as error:
+        raise InputError(f"{folder} cannot be made a folder, for there is a file; choose another.") from error
 
 
 def write_json(path: Path, table: dict[str, Any]) -> None:

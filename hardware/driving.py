@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from core.geometry import FloatArray
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from hardware.errors import DeviceError, RobotError, RobotLost, TrackingLost
@@ -44,6 +45,7 @@ class WatchedArm:
         self._robot = robot
         self._log = log
         self._reporter = reporter
+        self._slowed_by = ""
 
     def ready_state(self) -> RobotState:
         """Return the newest state of an arm that may be commanded.
@@ -58,28 +60,38 @@ class WatchedArm:
         refuse_unready(state)
         return state
 
+    def refuse_stopped(self) -> RobotState:
+        """Return the newest state of an arm that was not stopped while it was at rest.
+
+        Raises:
+            RobotError: it was, for example because another program moved it.
+        """
+        error = self._robot.stopped_by()
+        if error is not None:
+            raise error
+        return self.ready_state()
+
     def refuse_elsewhere(self, start_rad: FloatArray) -> None:
         """Refuse an arm that is not at rest at (6,): plans are made from there.
 
         Raises:
             TrackingLost: it is elsewhere, or moves.
         """
-        state = self.ready_state()
+        state = self.refuse_stopped()
         apart_rad = np.abs(state.joints_rad - start_rad).max()
         if apart_rad > SAME_PLACE_RAD or np.abs(state.joint_speeds_rad_s).max() > AT_REST_RAD_S:
             raise TrackingLost(
                 "The arm is not at rest where the plan starts (a joint is "
                 f"{np.degrees(apart_rad):.1f} degrees off); plan again."
             )
-        slow = slowness(state)
-        if slow:
-            self._reporter.warn(slow)
+        self._warn_if_slower(state)
 
     def follow(
         self,
         trajectory: JointTrajectory,
         name: str,
         label: str,
+        margin: PathMargin | None = None,
         watch: Callable[[RobotState, float], None] = lambda *_: None,
     ) -> None:
         """Follow a motion to its end.
@@ -88,6 +100,7 @@ class WatchedArm:
             trajectory: of the joints.
             name: of the motion, for the log.
             label: as shown to the user.
+            margin: how far beside its path the arm may be; none: as far as usual.
             watch: called with every state and the share that is done; what it raises ends the motion.
 
         Raises:
@@ -95,8 +108,13 @@ class WatchedArm:
             DeviceError: the sentence says what happened. The same.
         """
         self.ready_state()
-        handle = self._robot.follow(trajectory)
-        self._watch(handle, trajectory, name, label, watch)
+        handle = self._robot.follow(trajectory, margin)
+
+        def look(state: RobotState) -> None:
+            refuse_deviation(state, trajectory, margin)
+            watch(state, handle.progress)
+
+        self._watch(handle, trajectory.duration_s, name, label, look)
         handle.wait(REST_WITHIN_S)
         self._log.state(name, self.ready_state())
 
@@ -111,23 +129,31 @@ class WatchedArm:
     def _watch(
         self,
         handle: Move,
-        trajectory: JointTrajectory,
+        planned_s: float,
         name: str,
         label: str,
-        watch: Callable[[RobotState, float], None],
+        look: Callable[[RobotState], None],
     ) -> None:
-        deadline_s = time.monotonic() + MOST_TIMES_PLANNED * trajectory.duration_s + PATIENCE_S
+        deadline_s = time.monotonic() + MOST_TIMES_PLANNED * planned_s + PATIENCE_S
         while not handle.is_done:
             self._reporter.raise_if_cancelled()
             state = self.ready_state()
             self._log.state(name, state)
-            refuse_deviation(state, trajectory)
-            watch(state, handle.progress)
+            self._warn_if_slower(state)
+            look(state)
             if time.monotonic() > deadline_s:
                 raise RobotError(
                     f"The arm did not finish '{label}' in time and was stopped; find out what holds it."
                 )
             time.sleep(_POLL_S)
+
+    def _warn_if_slower(self, state: RobotState) -> None:
+        """Say what makes the arm slow, each thing once until it is over."""
+        slow = slowness(state)
+        kind = slow.partition(" at ")[0]
+        if slow and kind != self._slowed_by:
+            self._reporter.warn(slow)
+        self._slowed_by = kind
 
     def _wait_for_rest(self) -> RobotState:
         deadline_s = time.monotonic() + REST_WITHIN_S
@@ -137,6 +163,12 @@ class WatchedArm:
             if is_at_rest or time.monotonic() > deadline_s:
                 return state
             time.sleep(_POLL_S)
+
+
+def outermost(joints_rad: FloatArray) -> FloatArray:
+    """Return some configurations of a motion (N, 6): its ends, and where each joint is lowest and highest."""
+    rows = {0, len(joints_rad) - 1, *joints_rad.argmin(axis=0).tolist(), *joints_rad.argmax(axis=0).tolist()}
+    return joints_rad[sorted(rows)]
 
 
 _FULL_SPEED, _STILL = 0.99, 0.005
@@ -168,13 +200,21 @@ def refuse_unready(state: RobotState) -> None:
         raise unready
 
 
-def refuse_deviation(state: RobotState, trajectory: JointTrajectory) -> None:
+def refuse_deviation(
+    state: RobotState, trajectory: JointTrajectory, margin: PathMargin | None = None
+) -> None:
     """Refuse a state that is off the path.
 
     Raises:
-        TrackingLost: a joint is too far from every sample of the path.
+        TrackingLost: a joint, or by the margin a point of the arm, is too far from every sample of the path.
     """
-    deviation_rad = float(np.abs(trajectory.joints_rad - state.joints_rad).max(axis=1).min())
+    path_rad = trajectory.joints_rad
+    if margin is not None and (off_m := margin.beside_m(state.joints_rad, path_rad)) > margin.allowed_m:
+        raise TrackingLost(
+            f"The arm is up to {off_m * 1000:.1f} mm off its planned path, where its clearance leaves "
+            f"{margin.allowed_m * 1000:.1f} mm, and was stopped; find out what holds or pushes it."
+        )
+    deviation_rad = float(np.abs(path_rad - state.joints_rad).max(axis=1).min())
     if deviation_rad > MAX_DEVIATION_RAD:
         raise TrackingLost(
             f"The arm is {np.degrees(deviation_rad):.1f} degrees off its planned path and was stopped; "

@@ -13,8 +13,10 @@ from typing import Protocol
 import numpy.typing as npt
 
 from core.geometry import FloatArray
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from core.scan.model import ColorImage, DepthImage, Intrinsics
+from hardware.errors import RobotError
 from hardware.modes import RobotMode, SafetyMode
 
 
@@ -77,6 +79,7 @@ class RobotState:
         speed_scaling: what the speed slider makes of all speeds, 0 to 1.
         controller_s: the controller's own time stamp, which rises as long as it sends.
         time_s: when this state came, in seconds of `time.monotonic`.
+        tool_force_n: how hard something pushes at the tool, as far as the controller can tell.
     """
 
     joints_rad: FloatArray
@@ -91,6 +94,7 @@ class RobotState:
     speed_scaling: float
     controller_s: float
     time_s: float
+    tool_force_n: float = 0.0
 
     @property
     def age_s(self) -> float:
@@ -164,18 +168,32 @@ class Robot(_Device, Protocol):
         """
         ...
 
-    def follow(self, trajectory: JointTrajectory) -> Move:
+    def follow(self, trajectory: JointTrajectory, margin: PathMargin | None = None) -> Move:
         """Start to follow a checked tool path, given as a timed motion of the joints; return at once.
 
-        Where the speed slider or a slow link hold it up, it takes longer; it never hurries to catch up.
+        An arm that leaves its path by more than the margin, or a usual one, is stopped. Where the speed
+        slider or a slow link hold it up, it takes longer; it never hurries to catch up.
 
         Raises:
             RobotError: as with `move_joints`.
         """
         ...
 
+    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
+        """Refuse a motion through configurations (N, 6) that the arm's safety system does not allow.
+
+        Raises:
+            MoveRefused: it does not allow one; `label` names the motion in the sentence.
+            RobotError: it does not answer.
+        """
+        ...
+
     def stop(self) -> None:
         """Stop whatever moves; works while another call waits."""
+        ...
+
+    def stopped_by(self) -> RobotError | None:
+        """What stopped it for good, moving or at rest, until it is recovered; none if nothing did."""
         ...
 
     def pending_step(self) -> tuple[ReadyStep, str] | None:

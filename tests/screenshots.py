@@ -20,8 +20,18 @@ from app.gui.pages.page import PRIMARY
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.pages.tuning.page import TuningPage
 from app.library.places import SESSIONS_VARIABLE
+from app.operations.calibration.cell_file import CELLS_VARIABLE, known_cells, new_cell
+from app.operations.calibration.check import check_cell
+from app.operations.calibration.devices import examine_device
+from app.operations.calibration.hand_eye import calibrate_cell
+from app.operations.calibration.reference import store_reference
+from app.operations.calibration.steps import enter_board
+from app.operations.calibration.table import measure_table
+from app.operations.calibration.views import choose_views
+from core.calibration.board import BoardSpec
 from core.mesh_file import write_mesh
 from core.parameters import Parameters, apply_settings
+from core.progress import Reporter
 from hardware.simulation.objects import builtin_object
 from tests.app.sessions import make_poured_session, make_session
 
@@ -59,6 +69,8 @@ def main() -> None:
         for name, make in OBJECTS.items():
             make(library / name, name)
             print(f"session '{name}' made", flush=True)
+        os.environ[CELLS_VARIABLE] = str(Path(home) / "cells")
+        _make_cell()
         _make_objects(library.parent / "objects")
         make_application()
         for theme in THEMES:
@@ -77,9 +89,10 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
     window.ready.connect(lambda: ready.append(True))
     walk.wait(lambda: ready, "the window is ready", 60)
     _keep(walk, target / f"welcome-{theme}-{size[0]}.png")
+    _picture_cell(walk, target / f"cell-{theme}-{size[0]}.png")
     for name in OBJECTS:
         window.desk.open_session(library / name)
-        for key in (*WORK, *OTHERS):
+        for key in (key for key in (*WORK, *OTHERS) if key != "cell"):
             window.show_page(key)
             if key == "tuning":
                 _judge(walk, library.parent / "objects")
@@ -89,6 +102,30 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
             _keep(walk, target / f"{name}-{key}-{theme}-{size[0]}.png")
         window.desk.workspace.close()
     window.close_without_asking()
+
+
+def _make_cell() -> None:
+    """A simulated cell with all its steps done."""
+    path = new_cell("bench", is_simulated=True)
+    for step in ("arm", "camera"):
+        examine_device(path, step)
+    enter_board(path, BoardSpec(), "a4", 0.030)
+    calibrate_cell(path, Reporter(), None)
+    check_cell(path, Reporter(), None, lambda: None)
+    measure_table(path, Reporter(), None, lambda: None)
+    choose_views(path, Reporter())
+    store_reference(path, Reporter(), None, lambda: None)
+
+
+def _picture_cell(walk: Walk, path: Path) -> None:
+    """The Cell page, which depends on no session."""
+    cell = walk.window.desk.cell
+    cell.choose(known_cells()[0])
+    walk.window.show_page("cell")
+    walk.wait(lambda: cell.path is not None, "the cell is read", 20)
+    _keep(walk, path)
+    cell.choose(None)
+    walk.wait(lambda: cell.path is None, "the shipped cell is read", 20)
 
 
 def _make_objects(folder: Path) -> None:

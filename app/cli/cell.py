@@ -6,7 +6,9 @@ from typing import Annotated, Literal, Optional
 
 import typer
 
-cell = typer.Typer(help="A cell from a bare table: board, calibration, check.", rich_markup_mode=None)
+cell = typer.Typer(
+    help="A cell from a bare table: devices, board, calibration, check, table, views.", rich_markup_mode=None
+)
 
 NameArgument = Annotated[str, typer.Argument(metavar="NAME|FILE", help="A cell's name, or its file.")]
 YesOption = Annotated[bool, typer.Option("--yes", help="Let a real arm move without asking.")]
@@ -84,6 +86,62 @@ def check(
         cell_commands.undo_check(name)
     else:
         raise typer.Exit(0 if cell_commands.check(name, yes) else 1)
+
+
+@cell.command()
+def devices(name: NameArgument) -> None:
+    """Try arm and camera, without moving anything."""
+    from app.cli import cell_commands
+
+    raise typer.Exit(0 if cell_commands.devices(name) else 1)
+
+
+@cell.command()
+def table(
+    name: NameArgument,
+    thickness_mm: Annotated[
+        float, typer.Option("--thickness-mm", min=0, max=50, help="Of the board with what it is glued to.")
+    ] = 4.0,
+    undo: Annotated[bool, typer.Option("--undo", help="Put back what was there before.")] = False,
+    yes: YesOption = False,
+) -> None:
+    """Measure platform and table by the board on the platform's middle; the crop box follows."""
+    from app.cli import cell_commands
+
+    if undo:
+        cell_commands.undo_table(name)
+    else:
+        cell_commands.table(name, thickness_mm, yes)
+
+
+@cell.command()
+def views(
+    name: NameArgument,
+    n: Annotated[int, typer.Option("--n", min=6, max=200, help="How many views at most.")] = 24,
+    undo: Annotated[bool, typer.Option("--undo", help="Put back what was there before.")] = False,
+) -> None:
+    """Choose the views of a scan for this cell and arm, and put them into the cell's file."""
+    from app.cli import cell_commands
+
+    if undo:
+        cell_commands.undo_views(name)
+    else:
+        cell_commands.views(name, n)
+
+
+@cell.command()
+def reference(
+    name: NameArgument,
+    undo: Annotated[bool, typer.Option("--undo", help="Remove the reference view.")] = False,
+    yes: YesOption = False,
+) -> None:
+    """Store one view of a board that stays; each scan takes it again, to see whether the camera has moved."""
+    from app.cli import cell_commands
+
+    if undo:
+        cell_commands.undo_reference(name)
+    else:
+        cell_commands.reference(name, yes)
 
 
 @cell.command()

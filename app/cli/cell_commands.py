@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,12 @@ from app.cli.options import given_path
 from app.cli.terminal import TerminalReporter
 from app.operations.calibration import cell_file, hand_eye, steps
 from app.operations.calibration import check as checking
+from app.operations.calibration import devices as devices_of_cell
+from app.operations.calibration import reference as referring
+from app.operations.calibration import table as measuring
+from app.operations.calibration import views as choosing_views
+from app.operations.calibration.capture import CaptureObserver
+from app.operations.calibration.provenance import ARM, CAMERA, CHECK, REFERENCE, TABLE
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.errors import Cancelled, InputError
@@ -54,11 +61,12 @@ def calibrate(name: str, n_views: int, is_restarted: bool, is_confirmed: bool) -
     with TerminalReporter() as terminal:
         operator = PrintingOperator(path.parent) if is_confirmed else TerminalOperator(path.parent, terminal)
 
-        def taken(look: Look, n_usable: int) -> None:
+        def taken(look: Look, n_usable: int, _: object) -> None:
             _print_look(look)
             terminal.progress("views", min(n_usable, n_views), n_views)
 
-        found = hand_eye.calibrate_cell(path, terminal, operator, taken, n_views, is_restarted)
+        observer = CaptureObserver(taken=taken)
+        found = hand_eye.calibrate_cell(path, terminal, operator, observer, n_views, is_restarted)
     stated, unseen = found.bounds, found.held_out
     print(
         f"Calibrated from {found.n_views} views ({found.n_refused} looks refused); views and result: "
@@ -82,19 +90,87 @@ def check(name: str, is_confirmed: bool) -> bool:
     with TerminalReporter() as terminal:
         operator = PrintingOperator(path.parent) if is_confirmed else TerminalOperator(path.parent, terminal)
 
-        def moved() -> None:
-            if is_confirmed:
-                return
-            if not sys.stdin.isatty():
-                raise InputError("Move the board, and run it on a terminal, or add --yes.")
-            if not terminal.ask("Was the board moved and turned, so that the camera sees it from here?"):
-                raise Cancelled("Not confirmed; nothing moved.")
-
-        found = checking.check_cell(path, terminal, operator, moved, lambda look, _: _print_look(look))
-    print(next(step.figure for step in steps.steps(path) if step.name == "check"))
+        moved = partial(
+            _ask_for_board,
+            terminal,
+            is_confirmed,
+            "Was the board moved and turned, so that the camera sees it?",
+        )
+        found = checking.check_cell(path, terminal, operator, moved, _PRINTING)
+    print(_figure(path, CHECK))
     if not found.agreement.is_good:
         print("The calibration does not hold: calibrate anew, and see that camera and board are fixed.")
     return found.agreement.is_good
+
+
+def devices(name: str) -> bool:
+    """Try arm and camera, and return whether both can be used."""
+    path = _path(name)
+    problems = []
+    for step in (ARM, CAMERA):
+        finding = devices_of_cell.examine_device(path, step)
+        print(f"{step:<10}{finding.value}")
+        if finding.problem is not None:
+            problems.append(finding.problem)
+            print(f"          {finding.problem}", file=sys.stderr)
+    if not problems:
+        print(f"Next: poursight cell board {name}")
+    return not problems
+
+
+def table(name: str, thickness_mm: float, is_confirmed: bool) -> None:
+    """Measure where platform and table are, and say what changed."""
+    path = _path(name)
+    with TerminalReporter() as terminal:
+        operator = PrintingOperator(path.parent) if is_confirmed else TerminalOperator(path.parent, terminal)
+        laid = partial(
+            _ask_for_board, terminal, is_confirmed, "Does the board lie flat on the middle of the platform?"
+        )
+        found = measuring.measure_table(path, terminal, operator, laid, thickness_mm / MM, _PRINTING)
+    x, y, z = found.moved_m * MM
+    print(
+        f"{_figure(path, TABLE)}.\nThat is ({x:+.1f}, {y:+.1f}, {z:+.1f}) mm beside where the file had it; "
+        "platform, crop box and table are moved there.\n"
+        f"Next: poursight cell views {name}"
+    )
+
+
+def views(name: str, n_views: int) -> None:
+    """Choose views, and say what they are like."""
+    path = _path(name)
+    with TerminalReporter() as terminal:
+        print(choosing_views.choose_views(path, terminal, n_views).sentence)
+    print(f"Next: poursight scan --session DIR --cell {path}")
+
+
+def reference(name: str, is_confirmed: bool) -> None:
+    """Store one look, and say what it is for."""
+    path = _path(name)
+    with TerminalReporter() as terminal:
+        operator = PrintingOperator(path.parent) if is_confirmed else TerminalOperator(path.parent, terminal)
+        laid = partial(_ask_for_board, terminal, is_confirmed, "Is the board fixed where it can stay?")
+        referring.store_reference(path, terminal, operator, laid, _PRINTING)
+    print(f"Stored: {_figure(path, REFERENCE)}.")
+
+
+def undo_reference(name: str) -> None:
+    """Remove the reference view."""
+    steps.undo(_path(name), REFERENCE)
+    print("The reference view is removed; scans begin without it.")
+
+
+def undo_table(name: str) -> None:
+    """Put back what was there before."""
+    path = _path(name)
+    measuring.undo_table(path)
+    print(f"Platform, crop box and table in {path} are where they were before.")
+
+
+def undo_views(name: str) -> None:
+    """Put back what was there before."""
+    path = _path(name)
+    choosing_views.undo_views(path)
+    print(f"The views in {path} are those from before.")
 
 
 def undo_board(name: str) -> None:
@@ -129,6 +205,23 @@ def _path(name: str) -> Path:
     return cell_file.cell_path(str(given_path(name)))
 
 
+def _figure(path: Path, name: str) -> str:
+    return next(step.figure for step in steps.steps(path) if step.name == name)
+
+
+def _ask_for_board(terminal: TerminalReporter, is_confirmed: bool, question: str) -> None:
+    """Ask whether somebody laid the board where it is wanted."""
+    if is_confirmed:
+        return
+    if not sys.stdin.isatty():
+        raise InputError("Lay the board where it is wanted, and run it on a terminal, or add --yes.")
+    if not terminal.ask(question):
+        raise Cancelled("Not confirmed; nothing moved.")
+
+
 def _print_look(look: Look) -> None:
     if look.problem:
         print(f"Not used: {look.problem}", file=sys.stderr)
+
+
+_PRINTING = CaptureObserver(taken=lambda look, *_: _print_look(look))

@@ -54,7 +54,11 @@ class PrintingOperator:
     def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:
         """Nobody is asked: a stopped run has ended."""
 
-    def confirm_opening(self, gripper: str) -> None:
+    def is_cup_in_hand(self, known: str) -> bool:  # noqa: ARG002
+        """Nobody is asked: a closed gripper is left as it is."""
+        return False
+
+    def confirm_opening(self, gripper: str, known: str) -> None:
         """Nobody is asked: a closed gripper is left as it is."""
 
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
@@ -116,15 +120,20 @@ class TerminalOperator(PrintingOperator):
         )
         self._confirm("Find and fix what stopped it. Then: make the arm ready again (it does not move)?")
 
-    def confirm_opening(self, gripper: str) -> None:
+    def is_cup_in_hand(self, known: str) -> bool:
+        """Say what is known, and ask."""
+        print(f"The gripper is closed. {known}", file=sys.stderr)
+        return self._answer("Is the cup in the hand, as that run held it (no: it is empty, or unclear)?")
+
+    def confirm_opening(self, gripper: str, known: str) -> None:
         """Say what is known, and ask."""
         print(
-            f"The {gripper} is closed: an earlier program was ended while the hand held something, perhaps "
-            "the cup, perhaps full. The arm does not move now. Hold what is in the hand, or put something "
-            "under it; afterwards put the cup, filled, on its station.",
+            f"{known or f'The {gripper} is closed, and no run of this session left the arm here.'} The hand "
+            "may hold something, perhaps the cup, perhaps full. The arm does not move now. Hold what is in "
+            "the hand, or put something under it; afterwards put the cup, filled, on its station.",
             file=sys.stderr,
         )
-        self._confirm("Somebody holds it: open the gripper?")
+        self._confirm("Somebody holds it, or the hand is empty: open the gripper?")
 
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
         """Name the moves and ask."""
@@ -143,10 +152,13 @@ class TerminalOperator(PrintingOperator):
         return Outcome(cup.n_candies, spilled, remarks, is_simulated=False, facts={})
 
     def _confirm(self, question: str) -> None:
+        if not self._answer(question):
+            raise Cancelled("Not confirmed; nothing moved.")
+
+    def _answer(self, question: str) -> bool:
         if not sys.stdin.isatty():
             raise InputError("Nothing moves without a confirmation: run it on a terminal, or add --yes.")
-        if not self._terminal.ask(question):
-            raise Cancelled("Not confirmed; nothing moved.")
+        return self._terminal.ask(question)
 
 
 def plan_lines(plan: PourPlan, note: str = "") -> list[str]:

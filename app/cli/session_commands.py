@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -63,7 +64,7 @@ def scan(
     terminal = TerminalReporter()
     operator = PrintingOperator(session) if is_confirmed else TerminalOperator(session, terminal)
     with working(session, choices, workers, terminal=terminal) as pipeline:
-        scan_object(pipeline, settings, source, request, operator=operator)
+        scan_object(pipeline, settings, source, replace(request, cell_file=cell_file), operator=operator)
         quality = pipeline.quality()
         pipeline.colors()
     print(f"{len(quality.views)} views in {session}.")

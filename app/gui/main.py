@@ -52,6 +52,7 @@ def open_window(application: QApplication) -> MainWindow:
     if memory.geometry is not None:
         window.restoreGeometry(memory.geometry)
     _collect_once_ready(window)
+    window.give_stop_a_process()
     window.show()
     QTimer.singleShot(FIRST_PAINT_MS, window.begin)
     window.offer_cut_off_session()

@@ -239,6 +239,9 @@ def style_sheet(theme: Theme) -> str:
         font-size: 16pt; font-weight: 800; padding: 0; min-height: 58px; min-width: 118px;
     }}
     QPushButton#stop:pressed {{ border-color: #ffffff; }}
+    QWidget#stop_panel {{ background: {t.surface}; }}
+    QWidget#stop_panel QPushButton#stop {{ min-height: 0; min-width: 0; }}
+    QLabel#stop_channel {{ color: {t.muted}; font-size: 7pt; }}
     QFrame#top_bar {{ background: {t.surface}; border: none; border-bottom: 1px solid {t.line}; }}
     QFrame#tab_list {{ background: {t.window}; border: none; border-right: 1px solid {t.line}; }}
     QFrame#job_bar {{ background: {t.surface}; border: none; border-top: 1px solid {t.line}; }}

@@ -96,7 +96,7 @@ class ArmWork(Service):
             RobotError: the arm is not connected or not ready.
         """
         from app.jobs.connected_arm import Offer, refuse_stale, shown_pour
-        from app.operations.pouring import prepare
+        from app.operations.pouring import cell_to_pour_in, prepare
         from hardware.pouring.pouring import Pouring
 
         with self._job(reporter):
@@ -108,7 +108,10 @@ class ArmWork(Service):
                 refuse_stale(pipeline)
                 prepared = prepare(pipeline, cell)
             target = prepared.chosen()
-            pouring = Pouring(connected.arm, prepared.cell, target, task.folder, connected.moves)
+            pour_cell = cell_to_pour_in(prepared, task.folder, reporter)
+            pouring = Pouring(connected.arm, pour_cell, target, task.folder, connected.moves)
+            if connected.arm.gripper.is_closed and (known := pouring.take_up()):
+                raise connected.left_by_earlier_program(pouring, prepared.cell, known)
             fresh = pouring.plan()
             connected.pouring = pouring
             connected.T_flange_cup = prepared.cell.T_flange_grasp @ fresh.plan.T_grasp_cup

@@ -34,6 +34,7 @@ from hardware.modes import unreadiness
 
 if TYPE_CHECKING:
     from app.operations.pouring import PreparedPour
+    from core.motion.pour.cell import PourCell
     from core.motion.pour.plan import PlannedMove, PourTarget
     from core.pipeline.pipeline import Pipeline
     from hardware.cell.cell import Arm
@@ -109,6 +110,17 @@ class ConnectedArm:
             raise RobotNotReady(problem)
         if self.must_back_off:
             raise MotionError("The arm was stopped during a run; back off first.")
+
+    def left_by_earlier_program(self, pouring: Pouring, cell: PourCell, known: str) -> MotionError:
+        """Offer the way back of an earlier program's run; returns what to say about it."""
+        plan = pouring.interrupted_plan
+        assert plan is not None, "it was taken up"
+        self.pouring = pouring
+        self.T_flange_cup = cell.T_flange_grasp @ plan.T_grasp_cup
+        return MotionError(
+            f"The gripper is closed. {known} If the cup is in the hand, let the arm back off; if not, "
+            "connect again, then open the gripper where it is and plan from there."
+        )
 
     def refuse_moving(self) -> None:
         """Refuse an arm that is not at rest.

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from threading import Event as Flag
 from threading import Thread
 from typing import TYPE_CHECKING, Any
@@ -43,8 +44,8 @@ _MESH_SHARE = 0.1
 
 
 @dataclass
-class _Running:
-    """The current scan.
+class Running:
+    """The current job.
 
     Attributes:
         reporter: of its job.
@@ -64,7 +65,7 @@ class ScanWork(Service):
 
     def __init__(self, send: Callable[[Event], None]) -> None:
         super().__init__(send)
-        self._running: _Running | None = None
+        self._running: Running | None = None
         self._is_idle = Flag()
         self._is_idle.set()
         self._was_stopped = False
@@ -102,21 +103,11 @@ class ScanWork(Service):
         """
         progress = ScanReporter(reporter.publish, cell)
         with self._under_way(reporter) as running:
-
-            @contextmanager
-            def opened(cell: Cell) -> Iterator[None]:
-                running.robot = cell.robot
-                try:
-                    with progress.arm(cell):
-                        reporter.raise_if_cancelled()  # by a stop that came before there was an arm
-                        yield
-                finally:
-                    running.robot = None
-
+            opened = partial(watched_cell, running, progress)
             observer = ScanObserver(running.control, opened, progress.planned, progress.taken)
             # A scan computes nothing in workers, so that none is started.
             with WorkerPool() as pool, working_on(task, pool, reporter) as pipeline:
-                scan_object(pipeline, cell, source, request, observer, _PausingOperator(running))
+                scan_object(pipeline, cell, source, request, observer, PausingOperator(running))
 
     def propose(self, reporter: JobReporter, task: SessionTask, cell: CellSettings) -> Proposal:
         """Find out how many further views would show how much of the inside that the scan did not.
@@ -157,14 +148,14 @@ class ScanWork(Service):
         self._send(Event(StopDone(time.monotonic() - began_s, problem)))
 
     @contextmanager
-    def _under_way(self, reporter: JobReporter) -> Iterator[_Running]:
+    def _under_way(self, reporter: JobReporter) -> Iterator[Running]:
         from hardware.scanning.procedure import ScanControl
 
         self._is_idle.clear()
-        self._running = running = _Running(reporter, ScanControl())
+        self._running = running = Running(reporter, ScanControl())
         try:
             if self._was_stopped:
-                raise Cancelled("STOP was pressed before the scan began; start it again if the arm may move.")
+                raise Cancelled("STOP was pressed before it began; start it again if the arm may move.")
             yield running
         except PoursightError:
             reporter.raise_if_cancelled()  # a stopped arm raises errors, but somebody wanted it to stop
@@ -175,29 +166,42 @@ class ScanWork(Service):
             self._is_idle.set()
 
 
-class _PausingOperator:
+@contextmanager
+def watched_cell(running: Running, progress: ScanReporter, cell: Cell) -> Iterator[None]:
+    """A cell's devices are connected: its arm is shown, and can be stopped."""
+    running.robot = cell.robot
+    try:
+        with progress.arm(cell):
+            running.reporter.raise_if_cancelled()  # by a stop that came before there was an arm
+            yield
+    finally:
+        running.robot = None
+
+
+class PausingOperator:
     """Asks by pausing the scan: whoever resumes it has seen what was published."""
 
     is_present = True
 
-    def __init__(self, running: _Running) -> None:
+    def __init__(self, running: Running) -> None:
         self._running = running
 
     def confirm_step(self, step: ReadyStep, why: str) -> None:
         """Publish what is in the way and wait."""
-        self._ask(f"{why} Shall the program {step.value}?")
+        self.ask(f"{why} Shall the program {step.value}?")
 
     def confirm_route(self, route: ScanRoute, robot: str) -> None:
         """Publish the route and wait."""
-        self._ask(f"The {robot} waits for your word: {route.sentence}")
+        self.ask(f"The {robot} waits for your word: {route.sentence}")
 
     def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:  # noqa: ARG002
         """Publish what stopped the arm and wait; a scan that was cancelled has ended."""
         if isinstance(error, Cancelled):
             raise error
-        self._ask(f"{error} When that is done, the arm is made ready again; it does not move.")
+        self.ask(f"{error} When that is done, the arm is made ready again; it does not move.")
 
-    def _ask(self, sentence: str) -> None:
+    def ask(self, sentence: str) -> None:
+        """Publish a sentence and wait until somebody resumes the job; raises `Cancelled` if nobody does."""
         self._running.control.pause()
         self._running.reporter.publish(ScanQuestion(sentence))
         self._running.control.wait_while_paused(self._running.reporter)

@@ -26,7 +26,7 @@ from core.evaluation.evaluation import (
 )
 from core.evaluation.labels import LabelledObject, read_labels
 from core.evaluation.variants import Variant
-from core.files import write_whole
+from core.files import make_folder, write_whole
 from core.parameters import Parameters, flatten
 from core.progress import Reporter
 from core.session import explained
@@ -309,10 +309,7 @@ def _held(folder: Path) -> Iterator[None]:
         InputError: there is a file of that name.
         SessionError: another evaluation is at it.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except (FileExistsError, NotADirectoryError) as error:
-        raise InputError(f"{folder} cannot be made a folder, for there is a file; choose another.") from error
+    make_folder(folder)
     try:
         with FileLock(folder / ".lock", blocking=False):
             yield

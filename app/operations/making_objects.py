@@ -16,7 +16,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.evaluation.labels import MESHES_FOLDER
-from core.files import write_json, write_whole
+from core.files import make_folder, write_json, write_whole
 from core.mesh_file import write_ply
 from core.progress import Reporter
 from core.session import explained
@@ -34,10 +34,7 @@ def make_objects(folder: Path, families: Sequence[Family], n: int, seed: int, re
         SessionError: the disk is full or the folder may not be written.
         Cancelled: on request; the folder has no labels then.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except (FileExistsError, NotADirectoryError) as error:
-        raise InputError(f"{folder} cannot be made a folder, for there is a file; choose another.") from error
+    make_folder(folder)
     if any(folder.iterdir()):
         raise InputError(f"{folder} holds something already; name a new folder for the objects.")
     rows = []

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from app.operations.arm import ArmOperator, connected, recover
 from app.operations.choosing import described_cell, refuse_unfeasible
-from core.errors import Cancelled, InputError, MotionError, PoursightError, Remedy, StageError
+from core.errors import Cancelled, InputError, MotionError, Remedy, StageError
 from core.imagination.advice import advice_against
 from core.imagination.amount.result import Amount
 from core.imagination.results import PourGrid
@@ -18,6 +18,7 @@ from core.motion.pour.feasibility import PourMotions
 from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
 from core.pipeline.pipeline import Pipeline
 from core.pipeline.session_view import SessionView
+from core.progress import Reporter
 from core.report import motion_sentence, operator_sentence, pours_sentence
 from core.session import Session
 from core.session.cups import Cup, next_cup
@@ -88,8 +89,12 @@ class Operator(ArmOperator, Protocol):
         """Whether a robot shall pour a cup as planned; `note` says why it is this pour."""
         ...
 
-    def confirm_opening(self, gripper: str) -> None:
-        """Whether a gripper that was found closed shall open where it is; the pour is planned from there."""
+    def is_cup_in_hand(self, known: str) -> bool:
+        """Whether a gripper that was found closed holds the cup of an earlier run; `known` says which."""
+        ...
+
+    def confirm_opening(self, gripper: str, known: str) -> None:
+        """Whether a closed gripper shall open where it is; the pour is planned from there."""
         ...
 
     def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
@@ -168,11 +173,11 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
         )
     with connected(open_arm(settings), operator) as arm:
         if arm.gripper.is_closed and operator.is_present:
-            # left by an earlier program, whose plan to back off along is gone with it
-            operator.confirm_opening(arm.gripper.name)
-            arm.gripper.open()
-        pouring = Pouring(arm, prepared.cell, target, session, pipeline.reporter)
+            # for the cell as it is: at whatever speed that run was planned
+            empty_hand(Pouring(arm, prepared.cell, target, session, pipeline.reporter), operator)
         while True:
+            cell = cell_to_pour_in(prepared, session, pipeline.reporter)
+            pouring = Pouring(arm, cell, target, session, pipeline.reporter)
             cup = next_cup(session, target.digest, cups)
             folder = pour_cup(pouring, operator, arm.robot.name, cup)
             _record_outcome(pipeline, operator, settings, folder, cup)
@@ -221,6 +226,22 @@ def _advice(
     return advice_against(risk, target.i, target.j, pipeline.parameters.risk.wanted_clean)
 
 
+def cell_to_pour_in(prepared: PreparedPour, session: Path, reporter: Reporter) -> PourCell:
+    """The cell as the planner sees it; slower, which is said, for a real arm's first pour in a session."""
+    cell, share = prepared.cell, prepared.cell.limits.first_pour_speed
+    if not prepared.settings.robot.is_real or any(
+        run.is_done and not run.is_back_off for run in pour_runs(session)
+    ):
+        return cell
+    if share < 1:
+        reporter.warn(
+            f"The first pour of a session is made at {share:.0%} of the speed, except for the pour rotation "
+            "(motion.first_pour_speed in the cell file)."
+        )
+    slower = {name: share * getattr(cell.limits, name) for name in ("joint_speed_rad_s", "tool_speed_m_s")}
+    return replace(cell, limits=cell.limits.model_copy(update=slower))
+
+
 def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path:
     """Plan, ask and pour until one cup is poured; return its run's folder."""
     while True:
@@ -231,19 +252,38 @@ def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path
         except (DeviceError, Cancelled) as error:
             if not (operator.is_present and pouring.is_interrupted):
                 raise
-            _recover(operator, pouring, error)
+            recover(pouring, pouring.robot, operator, error)
+            _return(operator, pouring)
 
 
-def _recover(operator: Operator, pouring: Pouring, error: PoursightError) -> None:
-    """Step by step, each confirmed: make the arm ready, back off with the cup, then plan again."""
+def empty_hand(pouring: Pouring, operator: Operator) -> None:
+    """Find out what an earlier program left in the closed hand, and get rid of it; the operator decides."""
+    known = pouring.take_up()
+    if known and operator.is_cup_in_hand(known):
+        _return(operator, pouring)
+    else:
+        operator.confirm_opening(pouring.gripper, known)
+        pouring.give_up_way_back()
+
+
+def _return(operator: Operator, pouring: Pouring) -> None:
+    """Let an arm that is ready back off with the cup, as often as it is stopped; then it can plan again.
+
+    Where the arm was pushed off its checked path there is no way back along it: somebody takes what is in the
+    hand, and the next plan begins where the arm is.
+    """
     while pouring.is_interrupted:
-        recover(pouring, pouring.robot, operator, error)
-        moves = pouring.plan_back_off()
+        try:
+            moves = pouring.plan_back_off()
+        except MotionError as error:
+            operator.confirm_opening(pouring.gripper, str(error))
+            pouring.give_up_way_back()
+            return
         operator.confirm_back_off(moves)
         try:
             pouring.back_off(moves)
         except (DeviceError, Cancelled) as again:  # stopped once more, on the way back
-            error = again
+            recover(pouring, pouring.robot, operator, again)
     operator.backed_off()
 
 

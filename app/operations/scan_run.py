@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 from app.operations.arm import ArmOperator, recover
@@ -32,11 +33,13 @@ class ScanRequest:
         adaptive: take more views where the inside of an opening was not seen.
         retake: names of views of the finished scan to take again.
         restart: discard what an interrupted scan left.
+        cell_file: of the cell, beside which a look may be stored that is taken again first.
     """
 
     adaptive: bool = False
     retake: tuple[str, ...] = ()
     restart: bool = False
+    cell_file: Path | None = None
 
 
 @dataclass(frozen=True)

@@ -84,12 +84,22 @@ def scan_object(
         store.adopt(pipeline.session.folder("scan"))
     elif request.retake and not is_done:
         raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
-    with connected(
-        _open(settings if observer is None else _animated(settings), mesh, seed), operator
-    ) as cell:
+    if request.cell_file is not None and not is_replay:
+        _refuse_drift(request.cell_file, pipeline.reporter, observer, operator)
+    with connected(_open(settings if observer is None else animated(settings), mesh, seed), operator) as cell:
         _take(pipeline, cell, store, request, observer, operator)
     pipeline.keep_written_scan(store.publish, origin)
     store.remove()
+
+
+def _refuse_drift(
+    cell_file: Path, reporter: Reporter, observer: ScanObserver | None, operator: ScanOperator | None
+) -> None:
+    from app.operations.calibration.capture import NOBODY, CaptureObserver
+    from app.operations.calibration.reference import check_drift
+
+    watching = NOBODY if observer is None else CaptureObserver(observer.opened, is_watching=True)
+    check_drift(cell_file, reporter, operator, watching)
 
 
 def _take(
@@ -126,8 +136,8 @@ def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
     return open_cell(settings, world, seed)
 
 
-def _animated(settings: CellSettings) -> CellSettings:
-    """The same cell, with a simulated arm that moves where it would jump; its images are the same.
+def animated(settings: CellSettings) -> CellSettings:
+    """Return the same cell, with a simulated arm that moves where it would jump; its images are the same.
 
     As if time ran faster: speeds grow with the factor, accelerations with its square.
     """

@@ -12,7 +12,7 @@ from core.calibration.hand_eye import HandEyeFit
 from core.calibration.noise import pose_errors
 from core.calibration.rig import BOARD, HAND_EYE, Rig, all_derivatives
 from core.calibration.views import BoardView
-from core.geometry import transform_points
+from core.geometry import FloatArray, transform_points
 
 FEWEST_VIEWS = 4
 MOST_RATIO = 2.0
@@ -41,11 +41,21 @@ class Agreement:
 
 def check_agreement(fit: HandEyeFit, views: Sequence[BoardView], board: BoardSpec) -> Agreement:
     """Compare what views (at least two) of a still board say of its place; the fit is not changed."""
-    boards = [view.T_base_flange @ fit.T_flange_camera @ view.T_camera_board for view in views]
+    boards = _boards(fit, views)
     middles = np.array([transform_points(pose, board.center_m) for pose in boards])
     apart = np.linalg.norm(middles[:, None] - middles[None], axis=-1)
     rms_m = float(np.sqrt((np.linalg.norm(middles - middles.mean(axis=0), axis=1) ** 2).mean()))
-    rig = Rig(fit.T_flange_camera, boards[0], fit.rig.intrinsics)
+    _, ratio = locate_board(fit, views, board)
+    return Agreement(rms_m, float(apart.max()), ratio)
+
+
+def locate_board(fit: HandEyeFit, views: Sequence[BoardView], board: BoardSpec) -> tuple[FloatArray, float]:
+    """Return where a still board lies, by views of it (at least two) and a hand-eye pose that is not changed.
+
+    Returns:
+        `T_base_board` (4, 4), and the views' errors as `Agreement.ratio`.
+    """
+    rig = Rig(fit.T_flange_camera, _boards(fit, views)[0], fit.rig.intrinsics)
     ratio = 0.0
     for _ in range(_STEPS):
         poses = pose_errors(all_derivatives(rig, board, views))
@@ -60,4 +70,9 @@ def check_agreement(fit: HandEyeFit, views: Sequence[BoardView], board: BoardSpe
         freedom = 6 * (len(views) - 1)
         ratio = float(np.sqrt(np.einsum("vi,vi->", poses.errors, solved[..., 6]) / freedom))
         rig = rig.changed(np.concatenate([np.zeros(6), -step]))
-    return Agreement(rms_m, float(apart.max()), ratio)
+    return rig.T_base_board, ratio
+
+
+def _boards(fit: HandEyeFit, views: Sequence[BoardView]) -> list[FloatArray]:
+    """Where each view alone has the board."""
+    return [view.T_base_flange @ fit.T_flange_camera @ view.T_camera_board for view in views]

@@ -102,7 +102,8 @@ def _check_pours(table: Pours) -> None:
 
 
 def _check_risk(table: Risk) -> None:
-    if _shape(table["spilled"]) is None or not all(pour for row in table["spilled"] for pour in row):
+    tries = [pour for row in table["spilled"] for pour in row]
+    if _shape(table["spilled"]) is None or not any(tries) or (table.get("n_cups", 1) == 1 and not all(tries)):
         raise ValueError("spilled: a pour has no tries")
 
 

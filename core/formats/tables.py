@@ -225,6 +225,7 @@ class Pours(TypedDict):
     """`pouring/pours.json`."""
 
     n_pour: Annotated[Count, Field(ge=1)]
+    n_cups: NotRequired[Annotated[Count, Field(ge=1)]]
     p: list[list[FiniteFloat]]
     p_spread: NotRequired[list[list[FiniteFloat]]]
     n_in: list[list[list[Count]]]
@@ -234,11 +235,23 @@ class Pours(TypedDict):
     pivot_m: list[list[Vector]]
 
 
+class FewerCandies(TypedDict):
+    """A smaller amount that is sure enough."""
+
+    n_candies: Annotated[Count, Field(ge=1)]
+    i: Count
+    j: Count
+    n_tries: Annotated[Count, Field(ge=1)]
+    n_clean: Count
+
+
 class Risk(TypedDict):
     """`risk.json`, as far as it is read."""
 
     n_pour: Annotated[Count, Field(ge=1)]
+    n_cups: NotRequired[Annotated[Count, Field(ge=1)]]
     spilled: list[list[list[Count]]]
+    fewer: NotRequired[FewerCandies | None]
 
 
 class PourChoice(TypedDict):

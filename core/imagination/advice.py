@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.imagination.results import PourRisk
+from core.imagination.risk.result import FewerCandies, PourRisk
 
 
 def advice_against(risk: PourRisk | None, i: int, j: int, wanted_clean: float) -> str:
@@ -17,8 +17,18 @@ def advice_against(risk: PourRisk | None, i: int, j: int, wanted_clean: float) -
     if risk is None or risk.clean_at_least[i, j] >= wanted_clean:
         return ""
     n, clean = int(risk.n_tries[i, j]), int(risk.n_clean[i, j])
-    sure = f"{100 * risk.clean_at_least[i, j]:.0f} % likely ({clean} of {n} trials clean)"
     return (
-        f"Pouring is not advised: a clean pour is at least {sure}, and at least {100 * wanted_clean:.0f} % "
-        "is wanted. Fewer candies, a scan with more views, or a smaller cup may help."
+        f"Pouring is not advised: a clean pour is at least {_likely(risk.clean_at_least[i, j], clean, n)}, "
+        f"and at least {100 * wanted_clean:.0f} % is wanted. {_what_helps(risk.fewer)}"
     )
+
+
+def _what_helps(fewer: FewerCandies | None) -> str:
+    if fewer is None:
+        return "Another place, a scan with more views, or a smaller cup may help."
+    sure = _likely(fewer.clean_at_least, fewer.n_clean, fewer.n_tries)
+    return f"Ask for {fewer.n_candies} candies: with these it is at least {sure}."
+
+
+def _likely(bound: float, n_clean: int, n_tries: int) -> str:
+    return f"{100 * bound:.0f} % likely ({n_clean} of {n_tries} trials clean)"

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from core.geometry import BoolArray
 from core.imagination.cup import cup_pose
-from core.imagination.results import PourChoice, PourGrid, PourRisk
+from core.imagination.results import PourChoice, PourGrid
+from core.imagination.risk.result import PourRisk
 from core.parameters.bodies import CupParameters
 
 
@@ -16,8 +19,8 @@ def choose_pour(
     """Return the pour with i* = argmax_i sum_j P and j* = argmax_j P(i*, j), or the surest; none if none is
     feasible.
 
-    The surest is the one with the largest lower bound of the chance to spill nothing, then the one that
-    spills less on average, then the paper's.
+    The surest is, of those that were tried, the one with the largest lower bound of the chance to spill
+    nothing, then the one that spills less on average, then the paper's.
 
     Args:
         grid: the imagined pours.
@@ -30,8 +33,7 @@ def choose_pour(
         return None
     i, j = ranked[0]
     if risk is not None:
-        bound, mean = risk.clean_at_least, risk.mean_spilled
-        i, j = min(ranked, key=lambda pour: (-bound[pour], mean[pour]))
+        i, j = surest_first(risk, ranked)[0]
     theta = float(grid.theta_rad[i])
     pivot = grid.pivot_m[i, j]
     return PourChoice(i, j, theta, pivot, cup_pose(cup, pivot, theta, 0.0))
@@ -61,6 +63,12 @@ def papers_order(grid: PourGrid, feasible: BoolArray | None = None) -> list[tupl
     )
     distances = {row: np.argsort(-makeable[row], kind="stable") for row in directions}
     return [(row, int(j)) for row in directions for j in distances[row] if allowed[row, j]]
+
+
+def surest_first(risk: PourRisk, order: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Return pours (i, j) with the surest first, those that were not tried last; equals keep their order."""
+    bound, mean, is_unknown = risk.clean_at_least, risk.mean_spilled, risk.n_tries == 0
+    return sorted(order, key=lambda pour: (is_unknown[pour], -bound[pour], mean[pour]))
 
 
 def _from_axis(i: int) -> int:

@@ -8,9 +8,10 @@ from core.imagination.amount.result import Amount, PlannedAmount
 from core.imagination.capacity.result import Capacity
 from core.imagination.choice import choose_pour
 from core.imagination.judgement import Judgement
-from core.imagination.results import Containability, Drop, PourChoice, PourGrid, PourRisk
+from core.imagination.results import Containability, Drop, PourChoice, PourGrid
 from core.imagination.retention.result import Retention
-from core.imagination.risk import Tries
+from core.imagination.risk.result import PourRisk
+from core.imagination.risk.tries import Tries
 from core.parameters.bodies import CupParameters
 
 WORKER_MODULE = "core.imagination.preload"

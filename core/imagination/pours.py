@@ -5,6 +5,7 @@ The exits of a cup run are replayed onto the object, or cup and object are simul
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,6 +42,14 @@ class Pour:
 
 
 @dataclass(frozen=True)
+class PouredCup:
+    """A cup's run and `T_world_E` (4, 4), where it is poured."""
+
+    run: CupRun
+    T_world_E: FloatArray
+
+
+@dataclass(frozen=True)
 class PourOutcome:
     """What became of the candies.
 
@@ -56,9 +65,9 @@ class PourOutcome:
 
 
 def imagine_pours(
-    context: ImaginationContext, model: CollisionModel, footprint: Footprint, runs: CupRuns
+    context: ImaginationContext, model: CollisionModel, footprint: Footprint, runs: CupRuns, n_cups: int = 1
 ) -> PourGrid:
-    """Imagine all pours into an object of which some candies stayed.
+    """Imagine all pours into an object of which some candies stayed: of the first cup, if there are several.
 
     Raises:
         StageError: the cup cannot hold N_pour.
@@ -85,7 +94,7 @@ def imagine_pours(
     n_spilled = np.array([outcome.n_spilled for outcome in outcomes], dtype=np.int64).reshape(shape)
     recordings = [outcome.recording for outcome in outcomes if outcome.recording is not None]
     rows = tuple(tuple(recordings[i * N_INDENT : (i + 1) * N_INDENT]) for i in range(len(thetas)))
-    return PourGrid(pouring.n_pour, n_in, n_spilled, thetas, indents, pivots, rows)
+    return PourGrid(pouring.n_pour, n_in, n_spilled, thetas, indents, pivots, rows, n_cups)
 
 
 def pour_directions_rad(footprint: Footprint, pouring: PouringParameters) -> FloatArray:
@@ -117,6 +126,11 @@ def replay_task(
     return Task(_replay, (target, run, T_world_E, parameters, record))
 
 
+def in_turn_task(target: ObjectAtRest, cups: Sequence[PouredCup], parameters: Parameters) -> Task:
+    """Return the task whose result is the `PourOutcome` of cups that are poured one after the other."""
+    return Task(_replay_in_turn, (target, cups, parameters), weight=float(len(cups)))
+
+
 def full_task(
     target: ObjectAtRest, cup: BodyFile, packing: int, pour: Pour, parameters: Parameters, record: bool
 ) -> Task:
@@ -127,30 +141,20 @@ def full_task(
 def _replay(
     target: ObjectAtRest, run: CupRun, T_world_E: FloatArray, parameters: Parameters, record: bool
 ) -> PourOutcome:
-    poses, velocities = _in_world(run, T_world_E)
-    steps = round(pour_duration_s(parameters.pouring) * parameters.solver.rate_hz)
     record_steps = max(round(parameters.evidence.record_interval_s * parameters.solver.rate_hz), 1)
-    order = [int(k) for k in np.argsort(run.release_steps, kind="stable") if run.release_steps[k] >= 0]
-    in_world: list[int] = []  # candies in the order in which they entered the world
     frames: list[tuple[int, FloatArray]] = []
+
+    def look(step: int) -> None:
+        if step % _REPORT_STEPS == 0:
+            report_fraction(step / _n_steps(parameters))
+        if record and step % record_steps == 0:
+            frames.append((step // record_steps, world.poses()))
 
     with BulletWorld(
         parameters.solver, parameters.particle, parameters.pouring.contact, target.aabb_m
     ) as world:
         world.add_fixed_body(target.body)
-        first = run.release_steps[order[0]] if order else steps
-        for step in range(first, steps):
-            if step % _REPORT_STEPS == 0:
-                report_fraction(step / steps)
-            while len(in_world) < len(order) and run.release_steps[order[len(in_world)]] <= step:
-                candy = order[len(in_world)]
-                world.add_particle(poses[candy], velocities[candy])
-                in_world.append(candy)
-            if record and step % record_steps == 0:
-                frames.append((step // record_steps, world.poses()))
-            if step % CHECK_STEPS == 0 and _is_over(world, in_world, order):
-                break
-            world.step()
+        in_world = _let_fall(world, PouredCup(run, T_world_E), parameters, look)
         final = world.poses()
 
     n_in = _count(final, parameters.pouring.n_pour, target, parameters)
@@ -158,8 +162,51 @@ def _replay(
     return PourOutcome(n_in, _n_fallen(final, target), recording)
 
 
-def _is_over(world: BulletWorld, in_world: list[int], order: list[int]) -> bool:
-    return len(in_world) == len(order) and world.is_at_rest()
+def _replay_in_turn(target: ObjectAtRest, cups: Sequence[PouredCup], parameters: Parameters) -> PourOutcome:
+    with BulletWorld(
+        parameters.solver, parameters.particle, parameters.pouring.contact, target.aabb_m
+    ) as world:
+        world.add_fixed_body(target.body)
+        for index, cup in enumerate(cups):
+            report_fraction(index / len(cups))
+            _let_fall(world, cup, parameters, lambda _: None)
+        final = world.poses()
+    n_poured = parameters.pouring.n_pour * len(cups)
+    return PourOutcome(_count(final, n_poured, target, parameters), _n_fallen(final, target), None)
+
+
+def _let_fall(
+    world: BulletWorld, cup: PouredCup, parameters: Parameters, look: Callable[[int], None]
+) -> list[int]:
+    """Let a cup's candies into the world as they left the cup, until all rest or the pour is over.
+
+    Args:
+        world: with the object, and what was poured into it before.
+        cup: whose candies fall.
+        parameters: of the pour.
+        look: called with each step's number before it is made.
+
+    Returns:
+        The cup's candies in the order in which they entered the world.
+    """
+    run, steps = cup.run, _n_steps(parameters)
+    poses, velocities = _in_world(run, cup.T_world_E)
+    order = [int(k) for k in np.argsort(run.release_steps, kind="stable") if run.release_steps[k] >= 0]
+    in_world: list[int] = []
+    for step in range(run.release_steps[order[0]] if order else steps, steps):
+        while len(in_world) < len(order) and run.release_steps[order[len(in_world)]] <= step:
+            candy = order[len(in_world)]
+            world.add_particle(poses[candy], velocities[candy])
+            in_world.append(candy)
+        look(step)
+        if step % CHECK_STEPS == 0 and len(in_world) == len(order) and world.is_at_rest():
+            break
+        world.step()
+    return in_world
+
+
+def _n_steps(parameters: Parameters) -> int:
+    return round(pour_duration_s(parameters.pouring) * parameters.solver.rate_hz)
 
 
 def _in_world(run: CupRun, T_world_E: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -25,7 +25,8 @@ from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
 from core.imagination.rendering.shapes import cup_surface
 from core.imagination.results import POURS_FILE, Drop, PourGrid
-from core.imagination.risk import Tries, imagine_risk, try_pours, with_scan_error
+from core.imagination.risk.drawing import with_scan_error
+from core.imagination.risk.tries import Tries, imagine_risk, try_pours
 from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions, feasible_pours
 from core.motion.pour.planning import judge_pours
@@ -180,7 +181,8 @@ def _pour(given: Given) -> PourGrid | None:
         return None
     planned: PlannedAmount = given.result("amount")
     context = given.context.reading(with_n_pour(given.parameters, planned.n_pour))
-    return imagine_pours(context, given.result("collision"), drop.footprint, given.tools.cup_runs)
+    n_cups = len(planned.n_per_cup)
+    return imagine_pours(context, given.result("collision"), drop.footprint, given.tools.cup_runs, n_cups)
 
 
 def _try_pours(given: Given) -> Tries:

@@ -18,7 +18,7 @@ from core.imagination.amount.result import AMOUNT_FILE, Amount, PlannedAmount
 from core.imagination.choice import choose_pour
 from core.imagination.judgement import Judgement
 from core.imagination.results import DROP_FILE, POURS_FILE, Containability, Drop, PourChoice, PourGrid
-from core.imagination.risk import Tries
+from core.imagination.risk.tries import Tries
 from core.imagination.verdict import Verdict
 from core.motion.pour.feasibility import MOTION_FILE, PourMotions
 from core.parameters import Parameters, apply_settings

@@ -9,7 +9,7 @@ would erase each other. Figures in docs/decisions/0003-truncation.md.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,7 +34,7 @@ from core.reconstruction.segmentation import (
     touched_sides,
     whole,
 )
-from core.reconstruction.tsdf import TsdfVolume, extract_surface, largest_piece
+from core.reconstruction.tsdf import DistanceGrid, TsdfVolume, extract_surface, largest_piece
 from core.reconstruction.unseen import find_unseen_inside
 from core.scan.model import CropBox, Scan, crop_box_of
 from core.unseen_readings import UnseenReadings
@@ -87,8 +87,9 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
         found = _fuse_finely(
             found, scan, parameters, view_error_m(health, refinement), support_m, planes, steps
         )
-    mesh = _object_mesh(found, parameters, support_m)
-    unseen = _unseen_readings(found, parameters, support_m) if parameters.unseen == "solid" else None
+    field = _object_field(found, parameters, support_m)
+    mesh = field.surface(support_m)
+    unseen = _unseen_readings(found, field, support_m) if parameters.unseen == "solid" else None
     return Reconstruction(mesh, support_m, found.volume.truncation_m, health, refinement, unseen)
 
 
@@ -158,9 +159,7 @@ def _support_height_m(
     return estimate_m
 
 
-def _unseen_readings(
-    found: _Found, parameters: ReconstructionParameters, support_m: float
-) -> UnseenReadings | None:
+def _unseen_readings(found: _Found, solid: _ObjectField, support_m: float) -> UnseenReadings | None:
     """What else the object may be, where views ended inside its openings; none if none could matter."""
     volume = found.volume
     unseen = find_unseen_inside(volume, support_m)
@@ -168,20 +167,49 @@ def _unseen_readings(
     unseen_ml = float(room.sum() * volume.voxel_m**3 * 1e6)
     if unseen_ml < SMALLEST_UNSEEN_ML:
         return None
-    roomy = _object_mesh(found, parameters, support_m, unseen.in_volume(room))
-    is_open = unseen.reaches_support(volume.voxel_m)
-    through = unseen.in_volume(unseen.region) | unseen.below_region(volume) if is_open else None
-    leaky = None if through is None else _object_mesh(found, parameters, support_m, through)
-    return UnseenReadings(unseen_ml, roomy, leaky)
+    roomy = solid.freed(unseen.in_volume(room)).surface(support_m)
+    if not unseen.reaches_support(volume.voxel_m):
+        return UnseenReadings(unseen_ml, roomy, None)
+    through = unseen.in_volume(unseen.region) | unseen.below_region(volume)
+    return UnseenReadings(unseen_ml, roomy, solid.freed(through).surface(support_m))
 
 
-def _object_mesh(
-    found: _Found, parameters: ReconstructionParameters, support_m: float, freed: BoolArray | None = None
-) -> TriangleMesh:
-    """The object's surface; `freed` (X, Y, Z) are voxels of the volume that are free, whatever they were."""
+@dataclass(frozen=True)
+class _ObjectField:
+    """Distances (X, Y, Z) in the object's part of a volume, where what no view saw was given a value."""
+
+    volume: TsdfVolume
+    part: Part
+    distance: DistanceGrid
+    keeps_specks: bool
+
+    def freed(self, voxels: BoolArray) -> _ObjectField:
+        """Take voxels (X, Y, Z) of the whole volume as free, whatever they were."""
+        return replace(self, distance=np.where(voxels[self.part.slices], np.float32(1.0), self.distance))
+
+    def surface(self, support_m: float) -> TriangleMesh:
+        """Return the surface.
+
+        Raises:
+            StageError: nothing is above the platform.
+        """
+        origin_m = self.volume.centers_m(self.part.low)
+        mesh = extract_surface(self.distance, origin_m, self.volume.voxel_m)
+        if len(mesh.faces) == 0:
+            raise StageError(
+                f"Nothing of the object lies above the platform at {support_m * 1000:.0f} mm; its surface "
+                f"ends at {self.volume.centers_m(self.part.seen.max(axis=0))[2] * 1000:.0f} mm, so correct "
+                "reconstruction.platform_height_m."
+            )
+        return mesh if self.keeps_specks else largest_piece(mesh)
+
+
+def _object_field(found: _Found, parameters: ReconstructionParameters, support_m: float) -> _ObjectField:
     volume, table = found.volume, found.table
     solid = parameters.unseen == "solid"
-    part = _down_to_support(found, support_m) if solid or table is not None else found.part
+    # The released code keeps the specks beside the object, which lie within the cluster's gap.
+    keeps_specks = not solid and table is None
+    part = found.part if keeps_specks else _down_to_support(found, support_m)
     distance = fill_unseen(volume, part) if solid else volume.distance[part.slices]
     if table is not None:
         distance = cut_at_table(distance, volume, part, table, parameters.plane_margin_m)
@@ -189,17 +217,7 @@ def _object_mesh(
         error_m = volume.falloff_m if np.isfinite(volume.falloff_m) else volume.voxel_m
         distance = keep_floor(distance, volume, part, support_m, error_m)
         distance = cut_at_height(distance, volume, part, support_m)
-    if freed is not None:
-        distance = np.where(freed[part.slices], np.float32(1.0), distance)
-    mesh = extract_surface(distance, volume.centers_m(part.low), volume.voxel_m)
-    if len(mesh.faces) == 0:
-        raise StageError(
-            f"Nothing of the object lies above the platform at {support_m * 1000:.0f} mm; "
-            f"its surface ends at {volume.centers_m(part.seen.max(axis=0))[2] * 1000:.0f} mm, so correct "
-            "reconstruction.platform_height_m."
-        )
-    # The released code keeps the specks beside the object, which lie within the cluster's gap.
-    return largest_piece(mesh) if solid or table is not None else mesh
+    return _ObjectField(volume, part, distance, keeps_specks)
 
 
 def _warn_if_cut_off(

@@ -14,6 +14,7 @@ from scipy.ndimage import binary_dilation, distance_transform_edt, generate_bina
 
 from core.geometry import BoolArray
 from core.reconstruction.tsdf import TsdfVolume
+from core.voxel_groups import large_groups
 
 FREE_SHARE = 0.5
 """Share of the truncation in front of the surface from which on a voxel is surely free."""
@@ -86,7 +87,7 @@ def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenIn
     enclosed = ~outside & ~solid
     free = seen & (distance > FREE_SHARE)
     frontier = enclosed & ~seen & binary_dilation(free & enclosed)
-    frontier = _large_patches(frontier, SMALLEST_PATCH_M2 / volume.voxel_m**2)
+    frontier = large_groups(frontier, SMALLEST_PATCH_M2 / volume.voxel_m**2, ALL_NEIGHBOURS)
     return UnseenInside(outside, enclosed, frontier, _connected_to(frontier, enclosed & ~seen), first_layer)
 
 
@@ -97,14 +98,6 @@ def _outside_in_layer(solid: BoolArray) -> BoolArray:
     reached = np.unique(np.concatenate([edge.ravel() for edge in border]))
     outside: BoolArray = np.isin(groups, reached) & ~solid
     return outside
-
-
-def _large_patches(mask: BoolArray, fewest_voxels: float) -> BoolArray:
-    patches, _ = label(mask, structure=ALL_NEIGHBOURS)
-    is_large = np.bincount(patches.ravel()) >= fewest_voxels
-    is_large[0] = False
-    large: BoolArray = is_large[patches]
-    return large
 
 
 def _connected_to(seeds: BoolArray, mask: BoolArray) -> BoolArray:

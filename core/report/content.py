@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from core.imagination.amount.result import Amount
 from core.imagination.capacity.result import Capacity
-from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
+from core.imagination.results import Containability, PourChoice, PourGrid
 from core.imagination.retention.result import Retention
+from core.imagination.risk.result import PourRisk
 from core.mesh import TriangleMesh
 from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters

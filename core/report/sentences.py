@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import degrees
 from typing import TYPE_CHECKING
 
-from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
+from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.risk.result import PourRisk
 from core.imagination.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -164,10 +165,13 @@ def pours_sentence(containability: Containability, grid: PourGrid | None, choice
 def tries_sentence(risk: PourRisk, i: int, j: int) -> str:
     """Say how likely a pour spills nothing (lower 95 % bound), and in how many trials it did not."""
     n, clean = int(risk.n_tries[i, j]), int(risk.n_clean[i, j])
-    if n == 1:
+    if n == 0:
+        return "Not tried."
+    if n == 1 and risk.n_cups == 1:
         return "Tried once, without set-up errors" + ("." if clean else f": {_spilled(risk, i, j)} spilled.")
     bound = f"{100 * risk.clean_at_least[i, j]:.0f}{_NO_BREAK}%"
-    said = f"Clean pour: at least {bound} likely ({clean} of {n} trials clean)"
+    of_all = f" of all {risk.n_cups} cups" if risk.n_cups > 1 else ""
+    said = f"Clean pour{of_all}: at least {bound} likely ({clean} of {n} trials clean)"
     return f"{said}." if clean == n else f"{said}; {_spilled(risk, i, j)} spilled on average."
 
 
@@ -177,9 +181,12 @@ def risk_sentence(grid: PourGrid, risk: PourRisk, choice: PourChoice, paper: Pou
     if (choice.i, choice.j) == (paper.i, paper.j):
         return f"{said} The largest P alone (the paper's choice) is there, too."
     n, clean = risk.n_tries[paper.i, paper.j], risk.n_clean[paper.i, paper.j]
+    tried = (
+        f"of whose {n} {'try' if n == 1 else 'tries'} {clean} spilled nothing" if n else "which was not tried"
+    )
     return (
         f"{said} By P alone (the paper's choice) it would be from {place_text(grid, paper.i, paper.j)}, "
-        f"of whose {n} {'try' if n == 1 else 'tries'} {clean} spilled nothing."
+        f"{tried}."
     )
 
 

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from core.imagination.capacity.result import Capacity
-from core.imagination.results import PourChoice, PourGrid, PourRisk
+from core.imagination.results import PourChoice, PourGrid
 from core.imagination.retention.result import Retention
+from core.imagination.risk.result import PourRisk
 from core.mesh import TriangleMesh
 from core.mesh_topology import topology
 from core.parameters import Parameters, describe, difference
@@ -76,7 +77,7 @@ def risk_rows(grid: PourGrid, risk: PourRisk | None, choice: PourChoice | None) 
         grid,
         choice,
         lambda i, j: f"{clean[i, j]} of {n[i, j]}",
-        lambda i: f"{(spilled[i] * n[i]).sum() / n[i].sum():.1f}",
+        lambda i: f"{(spilled[i] * n[i]).sum() / n[i].sum():.1f}" if n[i].any() else "",
     )
 
 

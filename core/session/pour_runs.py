@@ -124,6 +124,16 @@ def pour_runs(session: Path) -> list[PourRun]:
     return [PourRun.load(folder) for folder in _run_folders(session)]
 
 
+def unfinished_run(session: Path) -> PourRun | None:
+    """Return the pour that was stopped and not backed off from since; none if there is none."""
+    for run in reversed(pour_runs(session)):
+        if run.is_done:
+            return None
+        if not run.is_back_off:
+            return run
+    return None
+
+
 def next_run_folder(session: Path) -> Path:
     """Return the folder for a new run of a session; it is not made."""
     folders = _run_folders(session)

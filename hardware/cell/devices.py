@@ -44,6 +44,7 @@ def ur_robot(settings: CellSettings, address: str | None = None, name: str | Non
         gripper.payload_center_m,
         gripper.voltage_v if gripper.kind == "ur5" else None,
         name=name,
+        cup_kg=gripper.cup_kg,
     )
 
 

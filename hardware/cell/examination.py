@@ -35,14 +35,15 @@ class Finding:
 def examine_cell(settings: CellSettings) -> Iterator[Finding]:
     """Try robot, gripper, camera and scan views; yields one finding after the other."""
     yield Finding("cell", settings.name + (" (SIMULATED)" if settings.is_simulated else ""))
-    yield _robot(settings)
+    yield examine_robot(settings)
     yield Finding("gripper", f"{settings.gripper.kind}, output {settings.gripper.output}")
-    yield _camera(settings)
+    yield examine_camera(settings)
     if settings.camera.kind != "replay":
         yield from _views(settings)
 
 
-def _robot(settings: CellSettings) -> Finding:
+def examine_robot(settings: CellSettings) -> Finding:
+    """Ask the arm's controller what it is and whether it can be used."""
     robot = settings.robot
     if not robot.is_real:
         return Finding("robot", f"{robot.kind} {robot.model}")
@@ -62,7 +63,8 @@ def _robot(settings: CellSettings) -> Finding:
     return Finding("robot", said, problem)
 
 
-def _camera(settings: CellSettings) -> Finding:
+def examine_camera(settings: CellSettings) -> Finding:
+    """Take an image."""
     try:
         camera = _camera_of(settings)
         with camera:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi
+from math import pi, radians
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -168,11 +168,17 @@ class GripperSettings(Group):
     payload_center_m: Point = quantity(
         (0.0, -0.02, 0.07), "Their centre of mass, in the flange's frame.", unit="m", source=_CELL
     )
+    cup_kg: float = quantity(
+        0.0, "Of that the full cup: the controller is told when the hand takes and leaves it; 0: it is not.",
+        unit="kg", source=_CELL, low=0, high=5, is_written=False,
+    )  # fmt: skip
     action_s: float = quantity(0.5, "Time it takes to open or close.", unit="s", source=_CELL, low=0, high=10)
 
     @model_validator(mode="after")
     def _grasps(self) -> GripperSettings:
         _refuse_no_pose("T_flange_grasp", self.grasp_pose)
+        if self.cup_kg > self.payload_kg:
+            raise ValueError("cup_kg is a part of payload_kg and must not exceed it")
         return self
 
     @property
@@ -269,6 +275,22 @@ class ScanSettings(Group):
     highest_object_m: float = quantity(
         0.42, "Planned views: no object rises higher above the platform.",
         unit="m", source=OURS, low=0.01, high=1, is_written=False,
+    )  # fmt: skip
+    drift_m: float = quantity(
+        0.002, "Reference view: a camera that moved farther is warned of.",
+        unit="m", source=OURS, low=0.0005, high=0.1, is_written=False,
+    )  # fmt: skip
+    drift_rad: float = quantity(
+        radians(0.3), "Reference view: one that turned by more is warned of.",
+        unit="rad", source=OURS, low=radians(0.05), high=0.5, is_written=False,
+    )  # fmt: skip
+    most_drift_m: float = quantity(
+        0.008, "Reference view: with one that moved farther nothing is scanned.",
+        unit="m", source=OURS, low=0.0005, high=0.1, is_written=False,
+    )  # fmt: skip
+    most_drift_rad: float = quantity(
+        radians(1.5), "Reference view: with one that turned by more nothing is scanned.",
+        unit="rad", source=OURS, low=radians(0.05), high=0.5, is_written=False,
     )  # fmt: skip
     settle_s: float = quantity(
         0.3, "How long the arm must have been at rest before an image.", unit="s", source=OURS, low=0, high=10

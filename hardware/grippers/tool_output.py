@@ -61,3 +61,4 @@ class ToolOutputGripper:
     def _set(self, value: bool) -> None:
         self._robot.set_tool_output(self._output, value)
         time.sleep(self._action_s)
+        self._robot.set_held(value)

@@ -6,25 +6,26 @@ Between the steps a person decides; nothing here asks, and nothing continues by 
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from core.errors import Cancelled, MotionError
+from core.errors import Cancelled, MotionError, SessionError
 from core.motion.pour.cell import PourCell
 from core.motion.pour.checking import check_plan
-from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
+from core.motion.pour.margins import MoveMargin, plan_margins, refuse_misplaced
+from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget, Segment, is_reversed
 from core.motion.pour.planning import plan_pour
-from core.motion.pour.recovery import plan_back_off
+from core.motion.pour.recovery import check_rejoining, on_the_way_back, plan_back_off
 from core.progress import Reporter
 from core.session import explained
-from core.session.pour_runs import next_run_folder
+from core.session.pour_runs import next_run_folder, unfinished_run
 from hardware.cell import Arm
-from hardware.driving import SAME_PLACE_RAD, WatchedArm
-from hardware.errors import DeviceError, OutputChanged, RobotError
+from hardware.driving import SAME_PLACE_RAD, WatchedArm, outermost
+from hardware.errors import DeviceError, OutputChanged, RobotError, RobotStopped, TrackingLost
 from hardware.interfaces import Robot, RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
@@ -68,6 +69,16 @@ class Pouring:
         return self._arm.robot
 
     @property
+    def gripper(self) -> str:
+        """Name of what holds the cup."""
+        return self._arm.gripper.name
+
+    @property
+    def interrupted_plan(self) -> PourPlan | None:
+        """Whose path the arm was stopped on; none if it was not."""
+        return None if self._interrupted is None else self._interrupted[0]
+
+    @property
     def is_interrupted(self) -> bool:
         """Whether a run was stopped on its path, so that the arm has to back off first."""
         return self._interrupted is not None
@@ -85,10 +96,10 @@ class Pouring:
                 "The arm was stopped on its path; let it back off before a new pour is planned."
             )
         if self._arm.gripper.is_closed:
-            # left by an earlier program, so that there is no plan to back off along
+            # left by an earlier program
             raise MotionError(
-                "The gripper is closed, so it may hold a cup; take it out, open the gripper and drive "
-                "the arm home from its teach pendant, then pour again."
+                "The gripper is closed, so it may hold a cup; hold it, take it out and open the gripper, "
+                "then plan again."
             )
         plan = plan_pour(self._cell, self._target, self._arm.robot.state().joints_rad)
         return FreshPlan(plan, self._target, time.monotonic())
@@ -141,9 +152,43 @@ class Pouring:
         plan, moves, index = self._interrupted
         joints_rad = self._arm.robot.state().joints_rad
         back = plan_back_off(plan, moves, index, joints_rad)
+        if not self._arm.gripper.is_closed:
+            back = tuple(replace(move, holds_cup=False) for move in back)  # it let go
+        check_rejoining(self._cell, self._target, back)
+        return back
+
+    def take_up(self) -> str:
+        """Find the run that left the arm where it is, with the gripper closed: an earlier program's.
+
+        Returns what is known of it, in a sentence, and is interrupted then as if it had been this program's;
+        empty if there is no such run.
+        """
+        run = unfinished_run(self._session)
+        if run is None:
+            return ""
+        try:
+            plan = PourPlan.load(run.folder / PLAN_FOLDER)
+            check_plan(self._cell, self._target, plan)
+        except (SessionError, MotionError):
+            return ""
+        index = on_the_way_back(plan, self._arm.robot.state().joints_rad)
+        if index is None:
+            return ""
+        self._interrupted, self.last_run = (plan, plan.moves, index), run.folder
+        return f"The arm is on the path of run {run.folder.name}. {run.sentence}"
+
+    def give_up_way_back(self) -> None:
+        """Let go of what is in the hand, where it is, and forget the path: the next plan begins here.
+
+        Raises:
+            DeviceError: the gripper does not open.
+        """
         if self._arm.gripper.is_closed:
-            return back
-        return tuple(replace(move, holds_cup=False) for move in back)  # it let go
+            self._arm.gripper.open()
+        if self.last_run is not None:
+            with RunLog(self.last_run) as log:
+                log.event("gripper", "The gripper was opened where the arm stood.", is_closed=False)
+        self._interrupted = None
 
     def back_off(self, moves: tuple[PlannedMove, ...]) -> Path:
         """Back off; return the run's folder. Raises as `carry_out` does."""
@@ -156,7 +201,8 @@ class Pouring:
         return folder
 
     def _make(self, plan: PourPlan, moves: tuple[PlannedMove, ...], log: RunLog) -> None:
-        procedure = PourProcedure(self._arm, moves, log, self._reporter)
+        margins = plan_margins(self._cell, self._target, plan)
+        procedure = PourProcedure(self._arm, moves, log, self._reporter, margins, self._cell)
         try:
             procedure.run()
         except BaseException:
@@ -187,9 +233,14 @@ class Pouring:
         if time.monotonic() - fresh.made_s > self._cell.limits.expires_s:
             raise MotionError("The plan has expired; plan again.")
         check_plan(self._cell, target, plan)
-        apart_rad = np.abs(self._arm.robot.state().joints_rad - plan.start_rad).max()
-        if apart_rad > SAME_PLACE_RAD:
+        state = self._arm.robot.state()
+        if np.abs(state.joints_rad - plan.start_rad).max() > SAME_PLACE_RAD:
             raise MotionError("The arm was moved since this plan was made; plan again.")
+        for margin in plan_margins(self._cell, target, plan).values():
+            refuse_misplaced(margin, state.T_base_flange @ self._cell.T_flange_grasp, state.T_base_tool)
+        for move in plan.moves:
+            if not is_reversed(move):
+                self._arm.robot.refuse_unsafe(outermost(move.trajectory.joints_rad), move.label)
 
 
 class PourProcedure:
@@ -199,8 +250,20 @@ class PourProcedure:
         current: index of the present or last move; -1 before the first.
     """
 
-    def __init__(self, arm: Arm, moves: Sequence[PlannedMove], log: RunLog, reporter: Reporter) -> None:
+    def __init__(
+        self,
+        arm: Arm,
+        moves: Sequence[PlannedMove],
+        log: RunLog,
+        reporter: Reporter,
+        margins: Mapping[Segment, MoveMargin],
+        cell: PourCell,
+    ) -> None:
+        """`margins` are those of the plan that the moves belong to, which was made for `cell`."""
         self.current = -1
+        self._margins = margins
+        self._T_flange_tool = cell.T_flange_grasp
+        self._max_force_n = cell.limits.max_force_n
         self._arm = arm
         self._watched = WatchedArm(arm.robot, log, reporter)
         self._moves = tuple(moves)
@@ -240,15 +303,33 @@ class PourProcedure:
         )
         duration_s = move.trajectory.duration_s
 
-        def watch(_state: RobotState, progress: float) -> None:
+        margin = self._margin()
+        resting_n = self._arm.robot.state().tool_force_n
+
+        def watch(state: RobotState, progress: float) -> None:
             self._refuse_empty_hand(move)
+            if move.holds_cup and state.tool_force_n - resting_n > self._max_force_n:
+                raise RobotStopped(
+                    f"Something pushes at the hand with the cup ({state.tool_force_n:.0f} N), so the arm was "
+                    "stopped; see what it touches, and whether payload_kg is right."
+                )
+            try:
+                refuse_misplaced(margin, state.T_base_flange @ self._T_flange_tool, state.T_base_tool)
+            except MotionError as error:
+                raise TrackingLost(str(error)) from error
             self._reporter.progress(STAGE, self._done_s + progress * duration_s, self._total_s)
 
         self._refuse_empty_hand(move)
-        self._watched.follow(move.trajectory, move.name, move.label, watch)
+        self._watched.follow(move.trajectory, move.name, move.label, margin.path, watch)
         self._done_s += duration_s
         if move.gripper_after is not None:
             self._grip(move.gripper_after == "close")
+
+    def _margin(self) -> MoveMargin:
+        """Of the present move; of the one that it leads to, where it is none of the plan's."""
+        return next(
+            self._margins[move.name] for move in self._moves[self.current :] if move.name in self._margins
+        )
 
     def _refuse_empty_hand(self, move: PlannedMove) -> None:
         if move.holds_cup and not self._arm.gripper.is_closed:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from core.geometry import FloatArray
 from core.motion.arm_models import ArmModel
 from core.motion.kinematics import flange_pose
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
 from hardware.interfaces import ReadyStep, RobotState
@@ -73,8 +74,8 @@ class KinematicRobot:
         path = checked_path(self._arm, self.name, path_rad)
         return self._start(JointMotion(path, speed_rad_s, acceleration_rad_s2), path[0])
 
-    def follow(self, trajectory: JointTrajectory) -> KinematicMove:
-        """Start to follow a timed motion of the joints, by the clock.
+    def follow(self, trajectory: JointTrajectory, margin: PathMargin | None = None) -> KinematicMove:  # noqa: ARG002
+        """Start to follow a timed motion of the joints, by the clock; it never leaves its path.
 
         Raises:
             RobotError: as with `move_joints`.
@@ -87,6 +88,13 @@ class KinematicRobot:
         with self._lock:
             self._is_stopped = True
             self._brake()
+
+    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
+        """It has no safety system."""
+
+    def stopped_by(self) -> RobotError | None:
+        """Whether it was stopped and not recovered."""
+        return self._refusal() if self._is_stopped else None
 
     def pending_step(self) -> None:
         """Nothing: it is always ready."""
@@ -111,15 +119,16 @@ class KinematicRobot:
         with self._lock:
             state = self.state()
             if self._is_stopped:
-                raise MoveRefused(
-                    f"The {self.name} was stopped; see that all is well, then recover the robot."
-                )
+                raise self._refusal()
             if np.abs(state.joint_speeds_rad_s).max() > 0:
                 raise RobotError(f"The {self.name} is still moving; stop it or wait until it stops.")
             if np.abs(start_rad - state.joints_rad).max() > 1e-3:
                 raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
             self._begin(motion)
             return KinematicMove(self, motion)
+
+    def _refusal(self) -> MoveRefused:
+        return MoveRefused(f"The {self.name} was stopped; see that all is well, then recover the robot.")
 
     def _brake(self) -> None:
         with self._lock:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry import FloatArray, invert_pose
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.cameras.replay import ReplayCamera
 from hardware.interfaces import ReadyStep, RobotState
@@ -49,12 +50,18 @@ class ReplayRobot:
         del path_rad, speed_rad_s, acceleration_rad_s2
         return _NoMove()
 
-    def follow(self, trajectory: JointTrajectory) -> _NoMove:
+    def follow(self, trajectory: JointTrajectory, margin: PathMargin | None = None) -> _NoMove:
         """Nothing moves."""
-        del trajectory
+        del trajectory, margin
         return _NoMove()
 
     def stop(self) -> None:
+        """Nothing moves."""
+
+    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
+        """Nothing moves."""
+
+    def stopped_by(self) -> None:
         """Nothing moves."""
 
     def pending_step(self) -> None:

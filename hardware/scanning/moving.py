@@ -11,9 +11,11 @@ import numpy as np
 
 from core.errors import MotionError, Remedy
 from core.motion.joint_path import find_route
+from core.motion.margin import PathMargin, path_margin
+from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from hardware.cell import Cell
-from hardware.driving import WatchedArm
+from hardware.driving import WatchedArm, outermost
 from hardware.errors import RobotError
 from hardware.interfaces import Move
 from hardware.pouring.run_log import RunLog
@@ -51,6 +53,14 @@ class Moving(Protocol):
         """
         ...
 
+    def refuse_stopped(self) -> None:
+        """Refuse an arm at a view that was stopped there, though nothing was asked of it.
+
+        Raises:
+            RobotError: it was; the sentence says why.
+        """
+        ...
+
 
 class WatchedMoving:
     """A real arm: the whole route is planned and confirmed, then driven under watch, and logged.
@@ -72,6 +82,9 @@ class WatchedMoving:
         if not views:
             return
         route = plan_route(self._cell, self._watched.ready_state().joints_rad, views)
+        for leg in route.legs:
+            if leg.trajectory is not None:
+                self._cell.robot.refuse_unsafe(outermost(leg.trajectory.joints_rad), f"to {leg.view.name}")
         self._log.event("planned", route.sentence, views=[leg.view.name for leg in route.legs])
         self.was_stopped = False
         if route.n_views:
@@ -87,11 +100,25 @@ class WatchedMoving:
         self._log.event("move", f"to {view.name}: {leg.trajectory.duration_s:.1f} s.", name=view.name)
         try:
             self._watched.refuse_elsewhere(leg.trajectory.start_rad)
-            self._watched.follow(leg.trajectory, view.name, f"to {view.name}")
+            self._watched.follow(leg.trajectory, view.name, f"to {view.name}", self._margin(leg.trajectory))
         except BaseException as error:
-            self.was_stopped = True
-            self._log.stopped(error, self._watched.stop())
+            self._note_stop(error)
             raise
+
+    def refuse_stopped(self) -> None:
+        """The driver watches an arm at rest, too; see `Moving`."""
+        try:
+            self._watched.refuse_stopped()
+        except RobotError as error:
+            self._note_stop(error)
+            raise
+
+    def _note_stop(self, error: BaseException) -> None:
+        self.was_stopped = True
+        self._log.stopped(error, self._watched.stop())
+
+    def _margin(self, trajectory: JointTrajectory) -> PathMargin:
+        return path_margin(self._cell.scene, trajectory.joints_rad, self._cell.settings.scan.min_clearance_m)
 
 
 class PlainMoving:
@@ -116,6 +143,9 @@ class PlainMoving:
                 path, settings.robot.joint_speed_rad_s, settings.robot.joint_acceleration_rad_s2
             )
         )
+
+    def refuse_stopped(self) -> None:
+        """Whoever stops it ends the scan; see `Moving`."""
 
     def _follow(self, move: Move) -> None:
         """Wait until the move is over; stop the arm when somebody wants the scan to end."""
@@ -160,3 +190,6 @@ class NoMoving:
 
     def go(self, view: PlannedView) -> None:
         """Nothing to do; see `Moving`."""
+
+    def refuse_stopped(self) -> None:
+        """Nothing can be stopped; see `Moving`."""

@@ -246,6 +246,7 @@ class ScanProcedure:
         settle_s = 0.0 if self._is_instant else self._cell.settings.scan.settle_s
         began_s = since_s = time.monotonic()
         while True:
+            self._moving.refuse_stopped()
             state = self._cell.robot.state()
             if time.monotonic() - began_s > MOVE_TIMEOUT_S:
                 raise RobotError(
@@ -271,6 +272,7 @@ class ScanProcedure:
             cell.camera.__enter__()
         before = cell.robot.state().joints_rad
         image = cell.camera.capture()
+        self._moving.refuse_stopped()
         after = cell.robot.state()
         if np.abs(after.joints_rad - before).max() > SAME_PLACE_RAD:
             raise RobotError(

@@ -29,7 +29,7 @@ from core.imagination.imagination import WORKER_MODULE
 from core.imagination.packing import CupRuns
 from core.imagination.pours import imagine_pours
 from core.imagination.results import Drop, PourChoice
-from core.imagination.risk import try_pours
+from core.imagination.risk.tries import try_pours
 from core.mesh import TriangleMesh
 from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Sequence
 from io import BytesIO
+from pathlib import Path
 from random import Random
 from typing import Any
 
@@ -225,3 +227,20 @@ def damaged_arrays(content: bytes, pick: Random) -> bytes:
     buffer = BytesIO()
     np.savez_compressed(buffer, **arrays)
     return buffer.getvalue()
+
+
+def replaced(path: Path, pick: Random) -> bool:
+    """Now and then put something else in the file's place: nothing, a folder, a pipe, a device or a link."""
+    if pick.random() > 0.06:
+        return False
+    path.unlink()
+    kind = pick.randrange(5)
+    if kind == 1:
+        path.mkdir()
+    elif kind == 2:
+        os.mkfifo(path)
+    elif kind == 3:
+        path.symlink_to("/dev/zero")
+    elif kind == 4:
+        path.symlink_to(path.parent / "nowhere")
+    return True

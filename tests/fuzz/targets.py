@@ -43,6 +43,7 @@ from core.session.cups import next_cup
 from core.session.pour_runs import pour_runs
 from hardware.cell import SIMULATED_CELL, read_cell
 from hardware.simulation.pour_outcome.outcome import TableOutcome
+from tests.fuzz.calibrated_cell import damaged_calibration, prepare_calibration
 from tests.fuzz.mutation import (
     ODD_NUMBERS,
     ODD_WORDS,
@@ -50,6 +51,7 @@ from tests.fuzz.mutation import (
     damaged_bytes,
     damaged_json,
     damaged_lines,
+    replaced,
 )
 from tests.fuzz.whole_session import make_whole_session, small_scan
 
@@ -97,7 +99,7 @@ def _prepare_scan(base: Path) -> None:
 def _scan(base: Path, folder: Path, pick: Random) -> Calls:
     shutil.copytree(base, folder / "scan")
     path = pick.choice(sorted(path for path in (folder / "scan").rglob("*") if path.is_file()))
-    if not _replaced(path, pick):
+    if not replaced(path, pick):
         damage = {".png": damaged_bytes, ".json": damaged_json}.get(path.suffix, damaged_lines)
         path.write_bytes(damage(path.read_bytes(), pick))
     yield lambda: read_scan(folder / "scan", Reporter())
@@ -116,7 +118,7 @@ def _mesh(base: Path, folder: Path, pick: Random) -> Calls:
     path = folder / source.name
     is_text = source.suffix in (".obj", ".off") or source.stem == "text"
     path.write_bytes((damaged_lines if is_text else damaged_bytes)(source.read_bytes(), pick))
-    _replaced(path, pick)
+    replaced(path, pick)
 
     def read() -> None:
         mesh = read_mesh(path, Reporter())
@@ -136,7 +138,7 @@ def _prepare_labels(base: Path) -> None:
 def _labels(base: Path, folder: Path, pick: Random) -> Calls:
     path = folder / "labels.csv"
     path.write_bytes(damaged_lines(pick.choice(sorted(base.iterdir())).read_bytes(), pick))
-    _replaced(path, pick)
+    replaced(path, pick)
     yield lambda: read_labels(folder, path)
 
 
@@ -148,7 +150,7 @@ def _prepare_spills(base: Path) -> None:
 def _spills(base: Path, folder: Path, pick: Random) -> Calls:
     path = folder / "spills.csv"
     path.write_bytes(damaged_lines((base / "spills.csv").read_bytes(), pick))
-    _replaced(path, pick)
+    replaced(path, pick)
     yield lambda: read_spills(path)
 
 
@@ -160,7 +162,7 @@ def _prepare_preset(base: Path) -> None:
 def _preset(base: Path, folder: Path, pick: Random) -> Calls:
     path = folder / "mine.json"
     path.write_bytes(damaged_json((base / "mine.json").read_bytes(), pick))
-    _replaced(path, pick)
+    replaced(path, pick)
     yield lambda: load_preset(str(path))
     yield lambda: load_preset(pick.choice(ODD_WORDS))
 
@@ -200,7 +202,7 @@ def _cell(base: Path, folder: Path, pick: Random) -> Calls:
         "a=" + "1" * 5000,
     )
     path.write_bytes(damaged_lines((base / "cell.toml").read_bytes(), pick, odd))
-    _replaced(path, pick)
+    replaced(path, pick)
     yield lambda: read_cell(path)
 
 
@@ -233,7 +235,7 @@ def _damage_file_of(session: Path, pick: Random) -> None:
     else:
         content = kinds.get(path.suffix, damaged_bytes)(content, pick)
     path.write_bytes(content)
-    _replaced(path, pick)
+    replaced(path, pick)
 
 
 def _readers_of(session: Path) -> Calls:
@@ -277,7 +279,7 @@ def _zip(base: Path, folder: Path, pick: Random) -> Calls:
     if pick.random() < 0.2:
         content = path.read_bytes()
         path.write_bytes(content[: len(content) // 2] + damaged_bytes(content[len(content) // 2 :], pick))
-    _replaced(path, pick)
+    replaced(path, pick)
     yield lambda: import_zip(path, folder / "sessions", Reporter())
 
 
@@ -315,7 +317,7 @@ def _library(base: Path, folder: Path, pick: Random) -> Calls:
     content = path.read_bytes()
     path.unlink()
     path.write_bytes(damaged_json(content, pick))
-    _replaced(path, pick)
+    replaced(path, pick)
     if pick.random() < 0.3:
         (root / os.fsdecode(b"caf\xe9")).symlink_to(
             pick.choice((root / "whole", root / "nowhere", root / "whole.zip"))
@@ -351,23 +353,6 @@ def _paths(base: Path, folder: Path, pick: Random) -> Calls:
     yield lambda: load_preset(text)
 
 
-def _replaced(path: Path, pick: Random) -> bool:
-    """Now and then put something else in the file's place: nothing, a folder, a pipe, a device or a link."""
-    if pick.random() > 0.06:
-        return False
-    path.unlink()
-    kind = pick.randrange(5)
-    if kind == 1:
-        path.mkdir()
-    elif kind == 2:
-        os.mkfifo(path)
-    elif kind == 3:
-        path.symlink_to("/dev/zero")
-    elif kind == 4:
-        path.symlink_to(path.parent / "nowhere")
-    return True
-
-
 TARGETS: dict[str, Target] = {
     "scan": Target(_prepare_scan, _scan),
     "mesh": Target(_prepare_meshes, _mesh),
@@ -376,6 +361,7 @@ TARGETS: dict[str, Target] = {
     "preset": Target(_prepare_preset, _preset),
     "set": Target(_nothing, _set),
     "cell": Target(_prepare_cell, _cell),
+    "calibration": Target(prepare_calibration, damaged_calibration),
     "session": Target(_prepare_session, _session),
     "zip": Target(_prepare_zip, _zip),
     "library": Target(_prepare_library, _library),

@@ -16,9 +16,10 @@ from core.imagination.capacity.result import Capacity
 from core.imagination.judgement import Judgement
 from core.imagination.recording import Recording
 from core.imagination.rendering.evidence import Evidence
-from core.imagination.results import Drop, Footprint, PourChoice, PourGrid, PourRisk
+from core.imagination.results import Drop, Footprint, PourChoice, PourGrid
 from core.imagination.retention.result import Retention
-from core.imagination.risk import Tries
+from core.imagination.risk.result import PourRisk
+from core.imagination.risk.tries import Tries
 from core.imagination.verdict import Verdict
 from core.mesh import TriangleMesh
 from core.motion.pour.feasibility import PourFeasibility, PourMotions

@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus, StopDone
 from app.jobs.arm_work import ArmWork
+from app.jobs.cell_work import CellWork
 from app.jobs.host import Host
-from app.jobs.scan_work import ScanWork
 from core.errors import PoursightError
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class ArmLink(QObject):
     stopped = Signal(object)
     _line_answered = Signal(float, object)
 
-    def __init__(self, arm: Host[ArmWork], scan: Host[ScanWork], parent: QObject | None = None) -> None:
+    def __init__(self, arm: Host[ArmWork], scan: Host[CellWork], parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.connected: ArmConnected | None = None
         self.status: ArmStatus | None = None
@@ -96,7 +96,7 @@ class ArmLink(QObject):
         if self._line is not None:
             self._stops.submit(self._stop_by_line, self._line, pressed_s)
         self._arm.order(ArmWork.stop)
-        self._scan.order(ScanWork.stop)
+        self._scan.order(CellWork.stop)
         if self.connected is None:
             self._failure = self.tr("No arm is connected: there was nothing to stop.")
             self._give_up()

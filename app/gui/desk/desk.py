@@ -15,8 +15,8 @@ from app.gui.desk.jobs import Jobs
 from app.gui.desk.workspace import Workspace
 from app.gui.remedies import worded
 from app.jobs.arm_work import ArmWork
+from app.jobs.cell_work import CellWork
 from app.jobs.host import Host
-from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import SessionWork
 from app.library.places import new_session_folder
 from app.library.session_folder import remember_parameters
@@ -41,7 +41,7 @@ class Desk(QObject):
         cell: the cell in use.
         arm: the link to the arm, with STOP.
         session_host: the process that reconstructs and imagines.
-        scan_host: the process that scans.
+        scan_host: the process that scans, and sets the cell up.
         arm_host: the process that pours.
     """
 
@@ -56,7 +56,7 @@ class Desk(QObject):
         self.cell = CellChoice(self.background, self)
         self.jobs = Jobs(self)
         self.session_host = self.jobs.make_host(SessionWork, "imagines")
-        self.scan_host = self.jobs.make_host(ScanWork, "scans")
+        self.scan_host = self.jobs.make_host(CellWork, "scans")
         self.arm_host = self.jobs.make_host(ArmWork, "moves the arm", is_repeatable=False)
         self._hosts: tuple[Host[Any], ...] = (self.session_host, self.scan_host, self.arm_host)
         self.arm = ArmLink(self.arm_host, self.scan_host, self)

@@ -9,6 +9,8 @@ def stage_words(stage: str) -> str:
     """Return what is being done, for the job bar; the stage's own name if it is a new one."""
     translate = QCoreApplication.translate
     words = {
+        "views": translate("Stage", "Looking at the board"),
+        "choosing views": translate("Stage", "Choosing the scan's views"),
         "import": translate("Stage", "Reading the images"),
         "scan": translate("Stage", "Taking views"),
         "reconstruction": translate("Stage", "Reconstructing the surface"),

@@ -1,4 +1,4 @@
-"""The cell's arm and furniture, as the 3D views of the Scan and the Robot page show them."""
+"""The cell's arm and furniture, as the 3D views of several pages show them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.shapes import box_mesh, cylinder_mesh
+from core.motion.kinematics import link_poses
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -27,6 +28,9 @@ _FOOT_M = 0.075
 _OBSTACLE = "obstacle"
 _GRID_M = 0.02
 _N_CASTERS = 8_000
+_MARGIN_M = 0.04
+_ARM_M = 0.08
+"""About the middles of the arm's links."""
 _LIFT_M = 0.0008
 """A ground on a box is that much above it, so that the two do not flicker."""
 
@@ -102,3 +106,32 @@ def cell_model(cell: CellSettings, on_table_m: npt.ArrayLike, margin_m: float) -
         platform=box_mesh((*low, top), (*high, place.platform_height_m)),
         obstacles=tuple(box_mesh(box.min_m, box.max_m) for box in cell.obstacles),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class ShownCell:
+    """What is shown of a cell.
+
+    Attributes:
+        model: arm and furniture.
+        has_arm: whether something moves; a cell that plays a recorded scan has no arm.
+        reach_m: (2, 3) corners of a box around the arm at rest and at all views.
+        box_min_m: (3,) lower corner of the box that holds the object.
+        box_max_m: (3,) upper corner.
+    """
+
+    model: CellModel
+    has_arm: bool
+    reach_m: FloatArray
+    box_min_m: FloatArray
+    box_max_m: FloatArray
+
+
+def load_shown_cell(cell: CellSettings) -> ShownCell:
+    """Put the cell together."""
+    low_m, high_m = np.array(cell.place.crop_min_m), np.array(cell.place.crop_max_m)
+    model = cell_model(cell, [low_m[:2], high_m[:2]], _MARGIN_M)
+    joints_rad = np.array([cell.robot.home_rad, *cell.scan.views_rad])
+    middles_m = link_poses(model.arm, joints_rad)[..., :3, 3].reshape(-1, 3)
+    reach_m = np.array([middles_m.min(axis=0) - _ARM_M, middles_m.max(axis=0) + _ARM_M])
+    return ShownCell(model, cell.robot.kind != "replay", reach_m, low_m, high_m)

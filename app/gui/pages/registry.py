@@ -11,7 +11,7 @@ from app.gui.desk.desk import Desk
 from app.gui.pages.page import Page
 
 WORK = ("scan", "reconstruction", "imagination", "pours", "robot")
-OTHERS = ("tuning", "history")
+OTHERS = ("tuning", "history", "cell")
 _CLASSES = {
     "scan": "scan.page:ScanPage",
     "reconstruction": "reconstruction.page:ReconstructionPage",
@@ -20,6 +20,7 @@ _CLASSES = {
     "robot": "robot.page:RobotPage",
     "tuning": "tuning.page:TuningPage",
     "history": "history.page:HistoryPage",
+    "cell": "cell.page:CellPage",
 }
 
 
@@ -58,5 +59,6 @@ def tab_facts(key: str) -> TabFacts:
         "robot": (tr("Robot"), tr("The planned motion, and the pour itself.")),
         "tuning": (tr("Tune"), tr("Try parameters on objects whose answer is known.")),
         "history": (tr("History"), tr("Earlier sessions: view, compare, export.")),
+        "cell": (tr("Cell"), tr("From a bare table to a calibrated cell.")),
     }
     return TabFacts(key, *texts[key])

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QCoreApplication, QEvent, QObject, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QFont,
     QFontMetrics,
     QKeyEvent,
     QKeySequence,
+    QMouseEvent,
     QPainter,
     QPaintEvent,
     QResizeEvent,
@@ -16,6 +17,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import (
     QAbstractButton,
+    QApplication,
     QButtonGroup,
     QFrame,
     QHBoxLayout,
@@ -30,11 +32,11 @@ from typing_extensions import override
 from app.gui.desk.desk import Desk
 from app.gui.desk.page_states import PageState
 from app.gui.pages.registry import TabFacts
+from app.gui.stop.panel import STOP_KEYS
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.state_mark import State, paint_mark, state_word
 from app.jobs.arm_events import ArmStatus
 
-STOP_KEYS = ("F12", "Pause")
 _STOP_KEY_CODES = (Qt.Key.Key_F12, Qt.Key.Key_Pause)
 _MARK_PX = 16
 _MOVED_RAD = 2e-4
@@ -216,14 +218,27 @@ class StopButton(QPushButton):
 
     @override
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Catch the keys even while a dialog disables shortcuts. Each press reaches one QWindow, once."""
-        if not isinstance(event, QKeyEvent) or not isinstance(watched, QWindow):
+        """Catch what would not reach STOP; each press reaches one QWindow, once.
+
+        Keys while a dialog disables shortcuts; and the mouse while an open menu takes every press, even one
+        on a window of another process.
+        """
+        if not isinstance(watched, QWindow):
+            return False
+        if isinstance(event, QMouseEvent) and event.type() == QEvent.Type.MouseButtonPress:
+            if QApplication.activePopupWidget() is not None and self._is_at(event.globalPosition().toPoint()):
+                self.pressed.emit()
+            return False
+        if not isinstance(event, QKeyEvent):
             return False
         if event.type() != QEvent.Type.KeyPress or event.key() not in _STOP_KEY_CODES:
             return False
         if not event.isAutoRepeat():
             self.pressed.emit()
         return True
+
+    def _is_at(self, global_position: QPoint) -> bool:
+        return self.isVisible() and self.rect().contains(self.mapFromGlobal(global_position))
 
 
 class Tab(QAbstractButton):

@@ -25,8 +25,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.pages.registry import OTHERS, WORK, tab_facts
-from app.gui.shell.frame import STOP_KEYS
 from app.gui.shell.window import MainWindow
+from app.gui.stop.panel import STOP_KEYS
 from app.gui.theme import GRID_PX, apply_theme, theme_named
 from app.jobs.session_work import SessionWork
 from app.library.places import sessions_folder
@@ -111,6 +111,7 @@ class Menus(QMenuBar):
         menu = self.addMenu(self.tr("&Cell"))
         _add(menu, self.tr("&Simulated cell"), "", lambda: self._desk.cell.choose(None))
         _add(menu, self.tr("&Open a cell file…"), "", self._open_cell)
+        _add(menu, self.tr("Set &up a cell"), "", partial(self._window.show_page, "cell"))
 
     def _add_help_menu(self) -> None:
         menu = self.addMenu(self.tr("&Help"))

@@ -23,6 +23,8 @@ from app.gui.pages.welcome.page import WelcomePage
 from app.gui.shell.focus import FocusKeeper, press_by_enter
 from app.gui.shell.frame import TabList, TopBar
 from app.gui.shell.job_bar import JobBar, LogDrawer, MessageBar, next_step
+from app.gui.shell.stop_dock import StopDock
+from app.gui.stop.messages import Answered
 from app.jobs.arm_events import StopDone
 from app.jobs.messages import Failed, FailureKind
 from app.library.index import Library
@@ -68,6 +70,7 @@ class MainWindow(QMainWindow):
         self._failed_page: str | None = None
         self._states = page_states(self.desk.workspace, None)
         self._asks_before_closing = True
+        self._stop_dock: StopDock | None = None
         self._pages: dict[str, Page] = {}
         self._laid_out: set[str] = set()
         self._stack = QStackedWidget()
@@ -192,6 +195,8 @@ class MainWindow(QMainWindow):
             event.ignore()
             return
         self._store_layout()
+        if self._stop_dock is not None:
+            self._stop_dock.close()
         self.desk.close()
         self.memory.store_session(None)  # only now: a kill while the work ends is one, too
         self._preload.wait()
@@ -252,6 +257,12 @@ class MainWindow(QMainWindow):
         desk.arm.stopped.connect(self._on_stopped)
         self.welcome.mug_wanted.connect(self.scan_the_mug)
 
+    def give_stop_a_process(self) -> None:
+        """From now on STOP lies over its place as a window of another process, while an arm has a channel."""
+        dock = self._stop_dock = StopDock(self, self.top_bar.stop, self.desk.arm)
+        dock.pressed.connect(self.stop)
+        dock.answered.connect(self._on_answered)
+
     def stop(self) -> None:
         """STOP: the arm first, over every channel there is; then the job that moved it."""
         self.desk.arm.stop()
@@ -267,6 +278,11 @@ class MainWindow(QMainWindow):
         self.log.add(
             done.sentence or self.tr("The controller confirmed the stop after {ms} ms.").format(ms=ms)
         )
+
+    def _on_answered(self, answered: Answered) -> None:
+        ms = round(1000 * answered.seconds)
+        said = self.tr("STOP's own channel was answered after {ms} ms.").format(ms=ms)
+        self.log.add(answered.problem or said)
 
     def _show_message(self, sentence: str) -> None:
         self.messages.say(sentence)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,13 +15,15 @@ import numpy as np
 from app.operations.arm import connected
 from app.operations.calibration.provenance import new_run, write_looks
 from app.operations.scan_run import ScanOperator
+from app.operations.scanning import animated
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Collection, Look
-from core.calibration.detection import detect_board, gray, measured_square_m
+from core.calibration.detection import Detection, detect_board, gray, measured_square_m
 from core.calibration.lens import Lens
 from core.calibration.proposing import Proposal
 from core.calibration.views import board_view, why_unusable
 from core.errors import InputError, MotionError, StageError
+from core.geometry import FloatArray
 from core.progress import Reporter
 from hardware.cell import Cell
 from hardware.cell.calibrating import open_calibration_cell
@@ -34,12 +36,30 @@ from hardware.scanning.views import PlannedView
 
 _STILL_RAD = 2e-4
 """An arm that moves more than this during an image was not at rest."""
+_MOVED = "The arm moved while the image was taken; keep away from it, and let it come to rest."
 _REST_S = 2.0
 _DEPTH_TOLERANCE = 0.05
 """Depth that differs by more says that the squares were measured or entered wrongly."""
 
-LookTaken = Callable[[Look, int], None]
-"""Called with each look, and how many usable views there are by now."""
+
+@dataclass(frozen=True)
+class CaptureObserver:
+    """How somebody follows a run.
+
+    Attributes:
+        opened: called with the cell; what it returns is entered while the cell's devices are connected.
+        planned: called with the poses of each round, in their order, before the first one is gone to.
+        taken: called with each look, how many usable views there are by now, and its image, if there is one.
+        is_watching: whether a simulated arm moves where it would jump.
+    """
+
+    opened: Callable[[Cell], AbstractContextManager[object]] = lambda cell: nullcontext(cell)
+    planned: Callable[[Sequence[Proposal]], None] = lambda poses: None  # noqa: ARG005
+    taken: Callable[[Look, int, CameraImage | None], None] = lambda look, n_usable, image: None  # noqa: ARG005
+    is_watching: bool = False
+
+
+NOBODY = CaptureObserver()
 
 
 @dataclass
@@ -54,7 +74,7 @@ class Capture:
         lens: of the camera.
         moving: brings the arm to poses.
         reporter: may cancel.
-        taken: called with each look.
+        observer: follows.
     """
 
     cell: Cell
@@ -64,7 +84,7 @@ class Capture:
     lens: Lens
     moving: Moving
     reporter: Reporter
-    taken: LookTaken
+    observer: CaptureObserver
 
     def adopt(self, looks: Sequence[Look]) -> None:
         """Go on with the looks of an interrupted run; their images stay where they are."""
@@ -83,6 +103,7 @@ class Capture:
         """
         first = len(self.collection.looks) + 1
         views = [PlannedView(f"view {first + k}", tuple(p.joints_rad.tolist())) for k, p in enumerate(poses)]
+        self.observer.planned(poses)
         self.moving.prepare(views)
         for view, pose in zip(views, poses, strict=True):
             self.reporter.raise_if_cancelled()
@@ -93,6 +114,29 @@ class Capture:
                 continue
             self._keep(self._look(pose.joints_rad))
 
+    def look_still(self, joints_rad: FloatArray, n_images: int) -> list[Detection]:
+        """Go to a pose and take several images of the board; the last one is kept.
+
+        Raises:
+            StageError: one of them does not show it, or the arm moved meanwhile.
+            PoursightError: see `go_and_look`; there is no clear way.
+        """
+        view = PlannedView("look", tuple(joints_rad.tolist()))
+        self.moving.prepare([view])
+        self.moving.go(view)
+        self._rest()
+        before, found, image = self.cell.robot.state(), [], None
+        for _ in range(n_images):
+            self.reporter.raise_if_cancelled()
+            image = self.cell.camera.capture()
+            found.append(detect_board(gray(image.color), self.collection.board, self.lens))
+        after = self.cell.robot.state()
+        if np.abs(after.joints_rad - before.joints_rad).max() > _STILL_RAD:
+            raise StageError(_MOVED)
+        seen = board_view(view.name, after.T_base_flange, found[-1])
+        self._keep((Look(joints_rad, seen), image))
+        return found
+
     def _keep(self, found: tuple[Look, CameraImage | None]) -> Look:
         look, image = found
         self.collection.looks.append(look)
@@ -100,10 +144,10 @@ class Capture:
         if image is not None:
             png = cv2.imencode(".png", cv2.cvtColor(image.color, cv2.COLOR_RGB2BGR))[1].tobytes()
         write_looks(self.folder, self.facts, self.collection.looks, png)
-        self.taken(look, len(self.collection.views))
+        self.observer.taken(look, len(self.collection.views), image)
         return look
 
-    def _look(self, joints_rad: np.ndarray[Any, Any]) -> tuple[Look, CameraImage | None]:
+    def _look(self, joints_rad: FloatArray) -> tuple[Look, CameraImage | None]:
         self._rest()
         before = self.cell.robot.state()
         try:
@@ -114,8 +158,7 @@ class Capture:
             return Look(joints_rad, None, str(error)), None
         after = self.cell.robot.state()
         if np.abs(after.joints_rad - before.joints_rad).max() > _STILL_RAD:
-            problem = "The arm moved while the image was taken; keep away from it, and let it come to rest."
-            return Look(joints_rad, None, problem), image
+            return Look(joints_rad, None, _MOVED), image
         board = self.collection.board
         name = f"view {len(self.collection.looks) + 1}"
         picture = gray(image.color)
@@ -147,7 +190,7 @@ def capturing(
     facts: dict[str, Any],
     reporter: Reporter,
     operator: ScanOperator | None,
-    taken: LookTaken,
+    observer: CaptureObserver,
     n_wanted: int,
 ) -> Iterator[Capture]:
     """Connect a cell that shall look at the board.
@@ -160,7 +203,10 @@ def capturing(
     if settings.robot.is_real and operator is None:
         raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
     with ExitStack() as stack:
-        cell = stack.enter_context(connected(open_calibration_cell(settings, board), operator))
+        shown = animated(settings) if observer.is_watching else settings
+        cell = stack.enter_context(connected(open_calibration_cell(shown, board), operator))
+        stack.enter_context(observer.opened(cell))
+        reporter.raise_if_cancelled()  # by a stop that came before there was an arm
         first = cell.camera.capture()
         folder = new_run(cell_file, step)
         moving: Moving = PlainMoving(cell, reporter)
@@ -176,8 +222,14 @@ def capturing(
             cell.scene, board, first.intrinsics, (width, height), settings.camera.pose,
             np.array(settings.robot.home_rad), settings.camera.min_range_m, n_wanted,
         )  # fmt: skip
-        devices = {"robot": cell.robot.name, "camera": cell.camera.name}
-        yield Capture(cell, folder, facts | devices, collection, lens, moving, reporter, taken)
+        i = first.intrinsics
+        known = {
+            "robot": cell.robot.name,
+            "camera": cell.camera.name,
+            "intrinsics": [i.fx, i.fy, i.cx, i.cy],
+            "size_px": [width, height],
+        }
+        yield Capture(cell, folder, facts | known, collection, lens, moving, reporter, observer)
 
 
 def find_board(capture: Capture) -> None:
@@ -201,7 +253,7 @@ def find_board(capture: Capture) -> None:
             continue
         if capture.look_here().view is not None:
             return
-    raise StageError(f"The board is in sight from none of the scan's views ({look.problem})")
+    raise StageError(f"The board is in sight from none of the scan's views. {look.problem}")
 
 
 def take_rounds(capture: Capture) -> None:

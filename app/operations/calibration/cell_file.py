@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from platformdirs import user_documents_path
 
 from app.library.places import slug
 from core.errors import InputError
-from core.files import read_content, reason, write_whole
+from core.files import make_folder, read_content, reason, write_whole
 from core.geometry import FloatArray
 from core.session import explained
 from hardware.cell.reading import CELL_FOLDER, SIMULATED_CELL, read_cell
@@ -47,6 +47,11 @@ def cell_path(name: str) -> Path:
     return path
 
 
+def known_cells() -> tuple[Path, ...]:
+    """Return the files in the cells' folder."""
+    return tuple(sorted(cells_folder().glob("*.toml")))
+
+
 def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None = None) -> Path:
     """Write a new cell's file, to be completed step by step; return its path.
 
@@ -76,7 +81,7 @@ def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None =
         _table(document, "simulation")["set_up"] = _simulated_set_up(read_cell(template), seed)
     content = tomlkit.dumps(document)
     with explained(path.parent):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         write_whole(path, content)
     return path
 
@@ -91,6 +96,25 @@ def write_hand_eye(path: Path, T_flange_camera: FloatArray) -> None:
 
     def change(document: tomlkit.TOMLDocument) -> None:
         _table(document, "camera")["T_flange_camera"] = _matrix(T_flange_camera)
+
+    _changed(path, change)
+
+
+def write_place(path: Path, places: dict[str, Any]) -> None:
+    """Put other values of `place` into a cell's file; see `write_hand_eye`."""
+
+    def change(document: tomlkit.TOMLDocument) -> None:
+        for name, value in places.items():
+            _table(document, "place")[name] = value
+
+    _changed(path, change)
+
+
+def write_views(path: Path, views_rad: Sequence[Sequence[float]]) -> None:
+    """Put other views, joints (6,) each, into a cell's file; see `write_hand_eye`."""
+
+    def change(document: tomlkit.TOMLDocument) -> None:
+        _table(document, "scan")["views_rad"] = _lines(views_rad)
 
     _changed(path, change)
 
@@ -117,8 +141,13 @@ def _table(document: tomlkit.TOMLDocument, name: str) -> Any:
 
 def _matrix(T: FloatArray) -> Any:
     """A pose (4, 4) as an array of four lines."""
+    return _lines(T.round(_DIGITS).tolist())
+
+
+def _lines(values: Sequence[Sequence[float]]) -> Any:
+    """An array of arrays, a line each."""
     rows = tomlkit.array()
-    for row in T.round(_DIGITS).tolist():
+    for row in values:
         rows.append(tomlkit.item([value + 0.0 for value in row]))
     rows.multiline(True)
     return rows

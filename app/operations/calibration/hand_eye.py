@@ -8,7 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from app.operations.calibration.capture import Capture, LookTaken, capturing, find_board, take_rounds
+from app.operations.calibration.capture import (
+    NOBODY,
+    Capture,
+    CaptureObserver,
+    capturing,
+    find_board,
+    take_rounds,
+)
 from app.operations.calibration.cell_file import write_hand_eye
 from app.operations.calibration.provenance import (
     HAND_EYE,
@@ -75,7 +82,7 @@ def calibrate_cell(
     cell_file: Path,
     reporter: Reporter,
     operator: ScanOperator | None,
-    taken: LookTaken = lambda look, n_usable: None,  # noqa: ARG005
+    observer: CaptureObserver = NOBODY,
     n_views: int = USUAL_VIEWS,
     is_restarted: bool = False,
 ) -> Calibration:
@@ -85,7 +92,7 @@ def calibrate_cell(
         cell_file: of the cell.
         reporter: may cancel.
         operator: confirms what a real arm does; without one nothing real moves.
-        taken: called with each look.
+        observer: of whoever follows it.
         n_views: wanted.
         is_restarted: whether the looks of an interrupted run are left aside.
 
@@ -97,7 +104,7 @@ def calibrate_cell(
     facts: dict[str, Any] = {"board": asdict(board), "T_flange_camera": settings.camera.pose.tolist()}
     before = None if is_restarted else _interrupted(cell_file, facts)
     with capturing(
-        cell_file, settings, board, HAND_EYE, facts, reporter, operator, taken, n_views
+        cell_file, settings, board, HAND_EYE, facts, reporter, operator, observer, n_views
     ) as capture:
         if before is not None:
             capture.adopt(before)

@@ -1,7 +1,8 @@
 """What is kept of a cell's calibration, in a folder beside its file: boards, views, results, versions.
 
-`NAME.calibration/board.json`, and for hand-eye and check one numbered folder each time: `views.json` and an
-image a view, written as soon as it is taken, and `result.json` when it is done.
+`NAME.calibration/board.json`, and for every other step one numbered folder each time: `result.json` when it
+is done, and where the arm looks at the board `views.json` and an image a view, written as soon as it is
+taken.
 """
 
 from __future__ import annotations
@@ -19,13 +20,18 @@ from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.calibration.views import BoardView
 from core.errors import InputError
-from core.files import read_json, reading, write_json, write_whole
+from core.files import make_folder, read_json, reading, write_json, write_whole
 from core.geometry import FloatArray
 from core.session import explained
 
 VIEWS, RESULT, WITHDRAWN = "views.json", "result.json", ".withdrawn"
-HAND_EYE, CHECK = "hand-eye", "check"
-_POSES: dict[str, tuple[str, ...]] = {HAND_EYE: ("before", "after", "T_base_board"), CHECK: ()}
+ARM, CAMERA, BOARD, HAND_EYE = "arm", "camera", "board", "hand-eye"
+CHECK, TABLE, VIEWS_STEP = "check", "table", "views"
+REFERENCE, DRIFT = "reference", "drift"
+_POSES: dict[str, tuple[str, ...]] = {
+    HAND_EYE: ("before", "after", "T_base_board"),
+    TABLE: ("T_base_board",),
+}
 """What a step's result must hold as poses (4, 4)."""
 _TOOLS = ("poursight", "opencv-python-headless", "scipy", "numpy")
 
@@ -88,7 +94,7 @@ def write_boards(cell: Path, entries: Sequence[BoardEntry]) -> None:
     """
     folder = calibration_folder(cell)
     with explained(folder.parent):
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         write_json(folder / "board.json", {"boards": [asdict(entry) for entry in entries]})
 
 
@@ -106,7 +112,7 @@ def new_run(cell: Path, step: str) -> Path:
     """
     root = calibration_folder(cell) / step
     with explained(cell.parent):
-        root.mkdir(parents=True, exist_ok=True)
+        make_folder(root)
         numbers = [int(folder.name[:4]) for folder in root.iterdir() if folder.name[:4].isdecimal()]
         folder = root / f"{max(numbers, default=0) + 1:04d}"
         folder.mkdir()
@@ -123,7 +129,7 @@ def latest_result(cell: Path, step: str) -> tuple[Path, dict[str, Any]] | None:
         if (folder / RESULT).is_file():
             table = read_json(folder / RESULT, None)
             with reading(folder / RESULT):
-                poses = {name: _shaped(table[name], 4, 4) for name in _POSES[step]}
+                poses = {name: _shaped(table[name], 4, 4) for name in _POSES.get(step, ())}
             return folder, table | poses
     return None
 

@@ -5,30 +5,42 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from enum import Enum
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from app.operations.calibration.hand_eye import is_same
+from app.operations.calibration.check import undo_check
+from app.operations.calibration.devices import device_table
+from app.operations.calibration.hand_eye import is_same, undo_calibration
 from app.operations.calibration.provenance import (
+    ARM,
+    BOARD,
+    CAMERA,
     CHECK,
+    DRIFT,
     HAND_EYE,
+    REFERENCE,
+    TABLE,
+    VIEWS_STEP,
     BoardEntry,
     calibration_folder,
     latest_result,
     now,
     read_boards,
+    withdraw,
     write_boards,
 )
+from app.operations.calibration.table import is_in_file, undo_table
+from app.operations.calibration.views import are_in_file, undo_views, views_are_for
 from core.calibration.board import BoardSpec
 from core.calibration.checking import MOST_RATIO
+from core.calibration.drift import Drift
 from core.calibration.printing import write_board_pdf
 from core.errors import InputError
-from core.files import reading
+from core.files import make_folder, reading
 from core.session import explained
 from hardware.cell import read_cell
-
-BOARD = "board"
 
 
 class StepState(Enum):
@@ -45,7 +57,7 @@ class Step:
     """One step of setting a cell up.
 
     Attributes:
-        name: board, hand-eye or check.
+        name: of the step, as the commands have it.
         state: how far it is.
         figure: what came of it, or what is to be done.
         time: when it was done; empty if it was not.
@@ -64,8 +76,34 @@ def steps(cell_file: Path) -> tuple[Step, ...]:
         PoursightError: the file or a record is damaged.
     """
     read_cell(cell_file)
-    ways: tuple[Callable[[Path], Step], ...] = (_board, _hand_eye, _check)
+    ways: tuple[Callable[[Path], Step], ...] = (
+        partial(_device, step=ARM), partial(_device, step=CAMERA), _board, _hand_eye, _check, _table, _views,
+        _reference,
+    )  # fmt: skip
     return tuple(way(cell_file) for way in ways)
+
+
+def undo(cell_file: Path, step: str) -> None:
+    """Take back what a step did last; what was recorded stays.
+
+    Raises:
+        InputError: it was never done, or the cell's file was changed since.
+        SessionError: the disk refuses.
+    """
+    ways: dict[str, Callable[[Path], object]] = {
+        BOARD: undo_board,
+        HAND_EYE: undo_calibration,
+        CHECK: undo_check,
+        TABLE: undo_table,
+        VIEWS_STEP: undo_views,
+    }
+    if step in ways:
+        ways[step](cell_file)
+        return
+    latest = latest_result(cell_file, step)
+    if latest is None:
+        raise InputError(f"The {step} of {cell_file} was not tried yet; there is nothing to undo.")
+    withdraw(latest[0])
 
 
 def enter_board(cell_file: Path, board: BoardSpec, paper: str, measured_m: float | None) -> Path:
@@ -91,7 +129,7 @@ def enter_board(cell_file: Path, board: BoardSpec, paper: str, measured_m: float
         entry = BoardEntry(replace(board, square_m=measured_m), True, now())
     else:
         with explained(cell_file.parent):
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             write_board_pdf(pdf, board, paper)
         entry = BoardEntry(board, False, now())
     write_boards(cell_file, [*entries, entry])
@@ -109,6 +147,18 @@ def undo_board(cell_file: Path) -> BoardEntry | None:
         raise InputError(f"No board of {cell_file} can be undone; there is none.")
     write_boards(cell_file, entries[:-1])
     return entries[-2] if len(entries) > 1 else None
+
+
+def _device(cell_file: Path, step: str) -> Step:
+    latest = latest_result(cell_file, step)
+    if latest is None:
+        return Step(step, StepState.OPEN, "find out what it is, and whether it can be used")
+    folder, table = latest
+    with reading(folder):
+        time, said, problem, device = (str(table["time"]), table["said"], table["problem"], table["device"])
+    if device != device_table(read_cell(cell_file), step):
+        return Step(step, StepState.STALE, "the file has another one than was tried", time)
+    return Step(step, StepState.FAILED if problem else StepState.DONE, problem or said, time)
 
 
 def _board(cell_file: Path) -> Step:
@@ -155,7 +205,77 @@ def _check(cell_file: Path) -> Step:
             f"{agreement['worst_m'] * 1000:.2f} mm), {agreement['ratio']:.1f} times what is expected"
         )
         time, hand_eye, is_good = str(table["time"]), table["hand_eye"], agreement["ratio"] <= MOST_RATIO
-    now_valid = latest_result(cell_file, HAND_EYE)
-    if now_valid is None or now_valid[0].name != hand_eye or _hand_eye(cell_file).state is not StepState.DONE:
+    if not _is_by_present_camera(cell_file, hand_eye):
         return Step(CHECK, StepState.STALE, "the calibration that was checked is not the present one", time)
     return Step(CHECK, StepState.DONE if is_good else StepState.FAILED, figure, time)
+
+
+def _table(cell_file: Path) -> Step:
+    latest = latest_result(cell_file, TABLE)
+    if latest is None:
+        return Step(
+            TABLE, StepState.OPEN, "lay the board on the middle of the platform, and measure where it is"
+        )
+    folder, table = latest
+    with reading(folder):
+        x, y, z = (1000 * value for value in table["center_m"])
+        figure = (
+            f"the platform's top is {z:.1f} mm above the base, its middle at ({x:.0f}, {y:.0f}) mm, "
+            f"tilted by {np.degrees(table['tilt_rad']):.2f} degrees"
+        )
+        time, hand_eye, after = str(table["time"]), table["hand_eye"], table["after"]
+        is_same_place = is_in_file(read_cell(cell_file).place, after)
+    if not is_same_place:
+        return Step(TABLE, StepState.STALE, "the file has another place than was measured", time)
+    if not _is_by_present_camera(cell_file, hand_eye):
+        return Step(
+            TABLE, StepState.STALE, "it was measured with another calibration than the present one", time
+        )
+    return Step(TABLE, StepState.DONE, figure, time)
+
+
+def _views(cell_file: Path) -> Step:
+    latest, settings = latest_result(cell_file, VIEWS_STEP), read_cell(cell_file)
+    if latest is None:
+        return Step(
+            VIEWS_STEP,
+            StepState.OPEN,
+            f"choose views for this cell; the file has {len(settings.scan.views_rad)}",
+        )
+    folder, table = latest
+    with reading(folder):
+        time, figure, made_for = str(table["time"]), str(table["said"]), table["for"]
+        is_same_set = are_in_file(settings, table["after"])
+    if not is_same_set:
+        return Step(VIEWS_STEP, StepState.STALE, "the file has other views than were chosen", time)
+    if made_for != views_are_for(settings):
+        return Step(
+            VIEWS_STEP, StepState.STALE, "camera, home or places are others than they were chosen for", time
+        )
+    return Step(VIEWS_STEP, StepState.DONE, figure, time)
+
+
+def _reference(cell_file: Path) -> Step:
+    latest = latest_result(cell_file, REFERENCE)
+    if latest is None:
+        return Step(REFERENCE, StepState.OPEN, "fix the board where it can stay, and store one view of it")
+    folder, table = latest
+    with reading(folder):
+        time, hand_eye, n_corners = str(table["time"]), table["hand_eye"], len(table["ids"])
+    if not _is_by_present_camera(cell_file, hand_eye):
+        return Step(REFERENCE, StepState.STALE, "the camera was calibrated anew since it was stored", time)
+    said = f"{n_corners} corners of the board, looked at again when a scan begins"
+    drifts = latest_result(cell_file, DRIFT)
+    if drifts is not None:
+        with reading(drifts[0]):
+            shift_m, turn_rad = (np.array(drifts[1][name], dtype=float) for name in ("shift_m", "turn_rad"))
+            said += f"; last time it had moved by {Drift(shift_m, turn_rad).sentence}"
+    return Step(REFERENCE, StepState.DONE, said, time)
+
+
+def _is_by_present_camera(cell_file: Path, hand_eye: str) -> bool:
+    """Whether a run of the hand-eye calibration is the one that counts."""
+    now_valid = latest_result(cell_file, HAND_EYE)
+    if now_valid is None or now_valid[0].name != hand_eye:
+        return False
+    return _hand_eye(cell_file).state is StepState.DONE

@@ -26,7 +26,7 @@ from core.evaluation.variants import Variant
 from core.imagination.judgement import Judgement
 from core.imagination.packing import CupRuns
 from core.imagination.results import Containability, Drop, PourChoice, PourGrid
-from core.imagination.risk import Tries
+from core.imagination.risk.tries import Tries
 from core.imagination.verdict import Verdict
 from core.mesh import TriangleMesh
 from core.motion.pour.cell import PourCell

@@ -34,6 +34,10 @@ _SMALLER = 0.7
 """Size of smaller candies: over an opening that a candy just passes, they hardly arch."""
 _ARCHES = 0.5
 """A heap of smaller candies is hardly smaller."""
+_HALF = 0.5
+"""Candies half as large are asked about; a scan has gaps of its own that smaller ones would pass."""
+_FALL_THROUGH = 0.5
+"""Share of the hollow for candies, below which the hollow for half as large ones leaks."""
 _SMALLEST_CANDIES = 1.0
 """A hollow counts when its bulk holds so many."""
 _USUAL_FRACTION = 0.6
@@ -59,13 +63,26 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
     if plan.stand_in.scale > 1:
         task = _basin_task(surface, plan.stand_in.particle.diameter_m, parameters)
         plan = _without_plugs(plan, basin, context.run([task], STAGE)[0])
+    for_half: list[Basin] = []
+    half = _basin_task(surface, _HALF * parameters.particle.diameter_m, parameters)
+    context.spare.append((half, for_half.append))
     fillings = _fill(context, target, plan)
     if _is_mostly_heaped(fillings):
         smaller = _of_smaller_candies(plan, parameters)
         also = _fill(context, target, smaller)
         if _bulk_ml(smaller, also, basin) < _ARCHES * _bulk_ml(plan, fillings, basin):
             return replace(_result(smaller, basin, also, surface, parameters), explanation=ARCH)
-    return _result(plan, basin, fillings, surface, parameters)
+    found = _result(plan, basin, fillings, surface, parameters)
+    through = _of_half(basin, for_half[0], parameters)
+    return replace(found, explanation=" ".join(filter(None, (found.explanation, through))))
+
+
+def _of_half(basin: Basin, for_half: Basin, parameters: Parameters) -> str:
+    """What is to be said of candies half as large: empty if these would stay, too."""
+    if for_half.candies_ml >= _FALL_THROUGH * basin.candies_ml:
+        return ""
+    size_mm = 1000 * _HALF * parameters.particle.diameter_m
+    return f"Candies of {size_mm:.0f} mm would fall through its openings."
 
 
 def _fill(context: ImaginationContext, target: ObjectAtRest, plan: FillPlan) -> tuple[Filling, ...]:

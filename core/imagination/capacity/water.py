@@ -6,7 +6,7 @@ Imported by workers alone, for it loads numba.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import ceil, pi
 
 import numba
 import numpy as np
@@ -15,6 +15,7 @@ from core.geometry import BoolArray, FloatArray, IntArray
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.stand_in import NOWHERE, Surroundings
 from core.mesh import TriangleMesh
+from core.voxel_groups import large_groups
 
 _FLATNESS = 0.5
 """Pitch along z relative to that across: a rim's height decides more than a wall's place."""
@@ -22,6 +23,8 @@ _FINEST_M = 0.0005
 _MOUTH_LAYERS = 12
 _NEAR = 1.5
 """Water within so many half thicknesses of a candy's centre is where candies are."""
+_BESIDE = 1.3
+"""So far, likewise, where it is not known to hold water: more would run out of a basket's openings."""
 
 
 def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
@@ -37,7 +40,7 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
     lattice = lattice_around(mesh, pitch, _FLATNESS * pitch, thickness_m)
     layers = np.arange(lattice.shape[2])
     spill = spill_layers(lattice, np.zeros(lattice.shape, dtype=np.bool_))
-    water = _without_dents(spill > layers, smallest_ml / ML / lattice.cell_m3)
+    water = large_groups(spill > layers, smallest_ml / ML / lattice.cell_m3)
     candies, rims_m = _candies(lattice, water, thickness_m / 2, smallest_ml / ML / lattice.cell_m3)
     heights, volumes = _curve(lattice, candies)
     return Basin(
@@ -53,17 +56,6 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
         map_origin_m=lattice.origin_m[:2],
         map_pitch_m=pitch,
     )
-
-
-def _without_dents(held: BoolArray, fewest: float) -> BoolArray:
-    """Leave out hollows of fewer points than `fewest`."""
-    from scipy.ndimage import label
-
-    hollows, _ = label(held)
-    is_large = np.bincount(hollows.ravel()) >= fewest
-    is_large[0] = False
-    large: BoolArray = is_large[hollows]
-    return large
 
 
 def _candies(
@@ -83,8 +75,31 @@ def _candies(
     # A sphere runs over when its centre is its radius above the rim.
     rims_m = lattice.heights_m[spill[tuple(nearest)]] - radius_m - pitch[2] / 2
     below_rim = lattice.heights_m < rims_m
-    reached = ((away < radius_m) | (water & (away < _NEAR * radius_m))) & below_rim
-    return _without_dents(reached, fewest), rims_m
+    near = (away < _NEAR * radius_m) & below_rim
+    touched = (away < radius_m) & below_rim
+    reached = touched | _beside(lattice, touched, away, radius_m, rims_m) | (water & near)
+    return large_groups(reached, fewest), rims_m
+
+
+def _beside(
+    lattice: Lattice, touched: BoolArray, away: FloatArray, radius_m: float, rims_m: FloatArray
+) -> BoolArray:
+    """Return the points (X, Y, Z) between balls and a wall that no face parts from where balls reach.
+
+    A scan's wall is rough, and one with a pinhole holds no water that would tell what lies beside a ball. Not
+    in the uppermost layers, where points are joined over the rim.
+    """
+    pitch = lattice.pitch_m.tolist()
+    within = (away < _BESIDE * radius_m) & (lattice.heights_m < rims_m - 2 * pitch[2])
+    held: BoolArray = touched & within
+    layers = round(1 / _FLATNESS)
+    for axis in (0, 1, *(2,) * layers) * ceil((_BESIDE - 1) * radius_m / pitch[0]):
+        joined = ~np.moveaxis(lattice.parted[axis], axis, 0)[:-1]
+        line, room = np.moveaxis(held, axis, 0), np.moveaxis(within, axis, 0)
+        up, down = line[:-1] & joined & room[1:], line[1:] & joined & room[:-1]
+        line[1:] |= up
+        line[:-1] |= down
+    return held
 
 
 def _most_common(values: FloatArray) -> float:

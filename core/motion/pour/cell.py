@@ -76,6 +76,16 @@ class MotionSettings(Group):
         low=0.00001,
         high=0.01,
     )
+    max_force_n: float = quantity(
+        50.0,
+        "How much harder something may push at the hand with the cup than when a move began.",
+        unit="N", source=OURS, low=5, high=250, is_written=False,
+    )  # fmt: skip
+    first_pour_speed: float = quantity(
+        0.4,
+        "Share of the speeds outside the pour rotation at which a real arm makes a session's first pour.",
+        unit="", source=OURS, low=0.1, high=1, is_written=False,
+    )  # fmt: skip
     expires_s: float = quantity(
         600.0, "How long after planning a plan may be executed.", unit="s", source=OURS, low=10, high=86400
     )

@@ -10,7 +10,8 @@ import numpy as np
 
 from core.files import read_json, write_json
 from core.geometry import BoolArray
-from core.imagination.results import RISK_FILE, PourChoice, PourGrid, PourRisk
+from core.imagination.results import PourChoice, PourGrid
+from core.imagination.risk.result import RISK_FILE, PourRisk
 
 MOTION_FILE = "motion.json"
 

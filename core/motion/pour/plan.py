@@ -113,6 +113,11 @@ class PlannedMove:
         return self.name.label
 
 
+def is_reversed(move: PlannedMove) -> bool:
+    """Whether a plan has its move out with the same samples in reverse; home is reached from elsewhere."""
+    return move.phase is MovePhase.BACK and move.name is not Segment.HOME
+
+
 @dataclass(frozen=True)
 class PourTarget:
     """The pour to plan: what was imagined, and chosen.

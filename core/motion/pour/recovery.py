@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
 from core.errors import MotionError
 from core.geometry import FloatArray
-from core.motion.pour.plan import MovePhase, PlannedMove, PourPlan, Segment
+from core.motion.pour.cell import PourCell
+from core.motion.pour.plan import MovePhase, PlannedMove, PourPlan, PourTarget, Segment
+from core.motion.pour.scene import PourScene, check_clearance
 from core.motion.trajectory import SAMPLE_S, JointTrajectory
 
 MAX_DEVIATION_RAD = 0.1
@@ -51,13 +55,46 @@ def plan_back_off(
     nearest, deviation_rad = _nearest(interrupted.trajectory, joints_rad)
     if deviation_rad > MAX_DEVIATION_RAD:
         raise MotionError(
-            f"The arm is {np.degrees(deviation_rad):.0f} degrees off its planned path; remove the cup by "
-            "hand, drive the arm home from its teach pendant, and pour again."
+            f"The arm is {np.degrees(deviation_rad):.0f} degrees off its planned path; take the cup out "
+            "of the hand by hand and plan from here."
         )
     first = replace(interrupted, trajectory=_remainder(interrupted.trajectory, nearest))
     if deviation_rad < _NO_DISTANCE_RAD:
         return (*begin, first, *rest)
     return (*begin, _rejoin(interrupted, joints_rad, first.trajectory.start_rad), first, *rest)
+
+
+def check_rejoining(cell: PourCell, target: PourTarget, moves: Sequence[PlannedMove]) -> None:
+    """Check the bit by which a way back joins the checked path: beside it nothing was checked.
+
+    A plan keeps its clearances and no more, so that an arm beside its path has less: half of them is enough.
+
+    Raises:
+        MotionError: it is not clear; the sentence says what a person has to do.
+    """
+    half = {name: getattr(cell.limits, name) / 2 for name in ("min_clearance_m", "cup_clearance_m")}
+    closer = replace(cell, limits=cell.limits.model_copy(update=half))
+    scene = PourScene(closer, target.object_aabb_m, target.pouring.cup)
+    for move, following in pairwise(moves):
+        if move.name is not Segment.REJOIN:
+            continue
+        try:
+            check_clearance(scene, [replace(move, name=following.name)])
+        except MotionError as error:
+            raise MotionError(
+                f"The arm is beside its planned path, and the way to it is not clear: {error}"
+            ) from error
+
+
+def on_the_way_back(plan: PourPlan, joints_rad: FloatArray) -> int | None:
+    """Return the index of the move back with the cup on whose path an arm at (6,) is; none if it is not."""
+    found = [
+        (_nearest(move.trajectory, joints_rad)[1], index)
+        for index, move in enumerate(plan.moves)
+        if move.phase is MovePhase.BACK and move.holds_cup
+    ]
+    deviation_rad, index = min(found)
+    return index if deviation_rad <= MAX_DEVIATION_RAD else None
 
 
 def _is_at_end(trajectory: JointTrajectory, joints_rad: FloatArray) -> bool:

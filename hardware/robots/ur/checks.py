@@ -7,6 +7,7 @@ import numpy as np
 from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import JOINT_NAMES, ArmModel
 from core.motion.kinematics import flange_pose
+from core.motion.margin import PathMargin
 from hardware.errors import (
     NotInRemoteControl,
     OutputChanged,
@@ -109,6 +110,33 @@ def tracking_lost(
     return TrackingLost(
         f"The {JOINT_NAMES[int(nearest.argmax())]} joint was {np.degrees(nearest.max()):.1f} degrees from "
         f"{what} and the arm was stopped; see what holds or pushes it, then recover the robot and plan anew."
+    )
+
+
+def beside_path(joints_rad: FloatArray, asked_rad: FloatArray, margin: PathMargin) -> TrackingLost | None:
+    """Say so when an arm at (6,) is farther from the last part (N, 6) of its path than the margin."""
+    off_m = margin.beside_m(joints_rad, asked_rad)
+    if off_m <= margin.allowed_m:
+        return None
+    return TrackingLost(
+        f"The arm was up to {off_m * 1000:.1f} mm beside its path, where its clearance leaves "
+        f"{margin.allowed_m * 1000:.1f} mm, and was stopped; see what holds or pushes it, then recover the "
+        "robot and plan anew."
+    )
+
+
+_REST_RAD = 5e-3
+"""So far a resting arm gives way to somebody who leans on it; brakes and gears give less."""
+
+
+def moved_at_rest(joints_rad: FloatArray, rest_rad: FloatArray) -> TrackingLost | None:
+    """Say so when an arm that nobody moves is elsewhere than it came to rest."""
+    if np.abs(joints_rad - rest_rad).max() <= _REST_RAD:
+        return None
+    return TrackingLost(
+        "The arm moved although nothing was asked of it, as if another program had taken it over, and was "
+        "stopped; see what runs on the controller and what pushes the arm, then recover the robot and plan "
+        "anew."
     )
 
 

@@ -12,7 +12,9 @@ from hardware.errors import EmergencyStop, ProtectiveStop, RobotLost, RobotNotRe
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.probe import DASHBOARD_PORT
 
-_ANSWER_S = 2.0
+_CONNECT_S = 2.0
+_ANSWER_S = 8.0
+"""A panel that is busy answers late; whoever stops the arm waits for no such answer."""
 _ENDS_WITHIN_S = 2.0
 _NOT_KNOWN = "could not understand"
 
@@ -30,9 +32,9 @@ class Dashboard:
         self._lock = Lock()
         self._buffer = b""
         try:
-            self._socket = socket.create_connection((address, DASHBOARD_PORT), _ANSWER_S)
+            self._socket = socket.create_connection((address, DASHBOARD_PORT), _CONNECT_S)
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            self._read_line(_ANSWER_S)  # the greeting
+            self._read_line(_CONNECT_S)  # the greeting
         except OSError as error:
             raise self._lost(error) from error
 

@@ -29,6 +29,7 @@ _FIELDS = (
     "actual_digital_output_bits",
     "target_speed_fraction",
     "tool_output_voltage",
+    "tool_output_mode",
     "tcp_offset",
 )
 _NOT_FOUND = "NOT_FOUND"
@@ -52,6 +53,7 @@ class Glance:
         slider: share of the programmed speed, 0 to 1.
         tool_voltage_v: supply of the tool connector.
         tool_offset: (6) of the tool frame at the flange, as set now.
+        has_dual_pin_power: whether the tool's outputs are set to be a power supply (e-Series).
         has_free_inputs: whether no other client holds the registers through which programs are driven.
     """
 
@@ -65,6 +67,7 @@ class Glance:
     slider: float
     tool_voltage_v: int | None
     tool_offset: tuple[float, ...] | None
+    has_dual_pin_power: bool
     has_free_inputs: bool
 
     @property
@@ -102,6 +105,7 @@ def glance(address: str) -> Glance:
         float(values["target_speed_fraction"][0]),
         None if voltage is None else int(voltage[0]),
         offset,
+        bool(values.get("tool_output_mode", (0,))[0]),
         has_free_inputs,
     )
 

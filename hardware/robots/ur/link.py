@@ -12,6 +12,8 @@ from queue import Empty, SimpleQueue
 from threading import Event, Lock, Thread
 from typing import Any
 
+import numpy as np
+
 from core.child_process import STDERR, STDOUT, ChildProcess
 from core.geometry import AnyArray
 from hardware.errors import RobotError, RobotLost, RobotUnreachable
@@ -78,6 +80,7 @@ CONNECT_S = 10.0
 LOST_S = 0.37
 """A state that is older, and still so after `_LOOK_S`, is lost: the worker is frozen, or the link is."""
 _LOOK_S = 0.03
+_POLL_S = 0.004
 _ANSWER_S = 2.0
 _END_S = 1.0
 
@@ -159,6 +162,25 @@ class WorkerLink:
         if raw is None or silence:
             raise self._lost(silence)
         return raw
+
+    def progress(self) -> float:
+        """Share of the present motion that is done; 0 when nothing is known of it."""
+        with suppress(RobotLost):
+            return float(self.state()["progress"])
+        return 0.0
+
+    def comes_to_rest(self, within_s: float, speed_rad_s: float) -> bool:
+        """Whether no joint is faster than a speed any more, in time.
+
+        Raises:
+            RobotLost: it is not known.
+        """
+        deadline_s = time.monotonic() + within_s
+        while np.abs(self.state()["joint_speeds_rad_s"]).max() > speed_rad_s:
+            if time.monotonic() > deadline_s:
+                return False
+            time.sleep(_POLL_S)
+        return True
 
     def ask(self, name: str, *arguments: Any, within_s: float = _ANSWER_S) -> None:
         """Let the worker do something and wait until it took it.

@@ -91,6 +91,7 @@ FIELDS = np.dtype(
         ("output_bits", "i8"),
         ("progress", "f8"),
         ("due_s", "f8"),
+        ("tool_force_n", "f8"),
     ]
 )
 """One state; `tool_pose` is metres and a rotation vector, `time_s` is `time.monotonic`, which all processes
@@ -196,4 +197,5 @@ def robot_state(raw: AnyArray, arm: ArmModel) -> RobotState:
         speed_scaling=float(np.clip(raw["speed_scaling"], 0.0, 1.0)),
         controller_s=float(raw["controller_s"]),
         time_s=float(raw["time_s"]),
+        tool_force_n=float(raw["tool_force_n"]),
     )

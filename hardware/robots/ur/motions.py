@@ -5,15 +5,17 @@ Both are driven by the controller's states, one step for each, and never block.
 
 from __future__ import annotations
 
+from collections import deque
 from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
 
 from core.geometry import AnyArray, FloatArray
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, TrackingLost
-from hardware.robots.ur.checks import deviation, raise_if, tracking_lost
+from hardware.robots.ur.checks import beside_path, deviation, raise_if, tracking_lost
 
 ARRIVED_RAD = 1e-3
 RESTING_RAD_S = 1e-3
@@ -29,6 +31,10 @@ _LAG_S = 0.5
 _LAG_SAMPLES = 101
 _PATH_RAD = 0.02
 """A lagging arm is late on its path, not beside it; so little is 17 mm at full reach."""
+_JUST_NOW_S, _LEARNED_S = 0.3, 1.5
+"""A lag is compared with older ones: one that grows because of a fault is noticed before it counts."""
+_LATER, _LATE_S = 1.3, 0.06
+_TELLING_RAD_S = 0.1
 _STANDS_S = 0.1
 _STANDING_RAD_S, _MOVING_RAD_S = 0.01, 0.05
 _SLOWED = 0.3
@@ -150,16 +156,50 @@ class JointMoves:
         return False
 
 
+class UsualLag:
+    """How late the arm is on its paths, by the link and the servo, as seen since the driver connected."""
+
+    def __init__(self) -> None:
+        self._followed_s = 0.0
+        self._usual_s = 0.0
+        self._recent: deque[tuple[float, float]] = deque()
+
+    def is_unusual(self, lag_s: float, passed_s: float) -> bool:
+        """Note a lag, some time after the one before; whether it is more than it ever was until just now."""
+        self._followed_s += passed_s
+        self._recent.append((self._followed_s, lag_s))
+        while self._recent[0][0] < self._followed_s - _JUST_NOW_S:
+            self._usual_s = max(self._usual_s, self._recent.popleft()[1])
+        return self._followed_s > _LEARNED_S and lag_s > _LATER * self._usual_s + _LATE_S
+
+
 class Following:
     """A timed motion, streamed with servoj, paced by the controller's time stamps."""
 
-    def __init__(self, control: Control, trajectory: JointTrajectory, cycle_s: float) -> None:
-        """Begin nothing yet: the first state does."""
+    def __init__(
+        self,
+        control: Control,
+        trajectory: JointTrajectory,
+        cycle_s: float,
+        margin: PathMargin | None = None,
+        lag: UsualLag | None = None,
+    ) -> None:
+        """Begin nothing yet: the first state does.
+
+        Args:
+            control: takes the targets.
+            trajectory: to follow.
+            cycle_s: time between two states.
+            margin: how far beside its path the arm may be; none: a usual distance of each joint.
+            lag: what was learned from the motions before; none: nothing.
+        """
         self.progress = 0.0
         self.is_streaming = True
         self._control = control
         self._trajectory = trajectory
         self._cycle_s = cycle_s
+        self._margin = margin
+        self._lag = lag or UsualLag()
         self._clock_s = 0.0
         self._last_s: float | None = None
         self._settles_since_s: float | None = None
@@ -177,7 +217,7 @@ class Following:
         self._clock_s += min(max(passed_s, 0.0), _MOST_CYCLES * self._cycle_s) * float(raw["speed_scaling"])
         self.progress = min(self._clock_s / self._trajectory.duration_s, 1.0)
         expected_rad = self._expected()
-        raise_if(tracking_lost(raw["joints_rad"], expected_rad, "its path", _PATH_RAD))
+        raise_if(self._beside_path(raw["joints_rad"], expected_rad))
         self._refuse_standing(raw, expected_rad)
         if self._clock_s >= self._trajectory.duration_s:
             if self._settles_since_s is None:
@@ -203,6 +243,23 @@ class Following:
         return np.column_stack(
             [np.interp(times_s, self._trajectory.times_s, column) for column in self._trajectory.joints_rad.T]
         )
+
+    def _beside_path(self, joints_rad: FloatArray, expected_rad: FloatArray) -> TrackingLost | None:
+        if self._margin is None:
+            return tracking_lost(joints_rad, expected_rad, "its path", _PATH_RAD)
+        bound_m, nearest = self._margin.bound_m(joints_rad, expected_rad)
+        step_s = _LAG_S / (_LAG_SAMPLES - 1)
+        around_rad = expected_rad[max(nearest - 1, 0) : nearest + 2]
+        path_rad_s = np.abs(np.diff(around_rad, axis=0)).min(axis=0).max() / step_s
+        # where the path rests there is no telling how late the arm is on it
+        is_late = path_rad_s > _TELLING_RAD_S and self._lag.is_unusual(nearest * step_s, self._cycle_s)
+        if bound_m > self._margin.allowed_m and is_late:
+            return TrackingLost(
+                "The arm is late and leaves its path, as if another program had taken it over, and was "
+                "stopped; see what runs on the controller and what holds the arm, then recover the robot and "
+                "plan anew."
+            )
+        return beside_path(joints_rad, expected_rad, self._margin)
 
     def _refuse_standing(self, raw: AnyArray, expected_rad: FloatArray) -> None:
         """Refuse an arm at rest while all of the last part of its path moves: no lag explains that.

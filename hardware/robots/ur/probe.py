@@ -37,11 +37,13 @@ def probe(address: str) -> None:
                 "on, check the address in the cell file and the network cable."
             ) from error
         if not is_controller:
-            says = "is no UR controller" if received else "sends nothing, as no UR controller does"
-            raise RobotUnreachable(
-                f"What answers at {address} on port {port} {says}; correct the address in the cell "
-                "file, or if it is right restart the controller."
+            says = (
+                "is no UR controller; correct the address in the cell file."
+                if received
+                else "sends nothing: a controller that hangs or is still starting does so; see its panel and "
+                "restart it, or correct the address in the cell file if there is no UR controller."
             )
+            raise RobotUnreachable(f"What answers at {address} on port {port} {says}")
 
 
 def _answers_as_controller(connection: socket.socket, port: int, deadline_s: float) -> tuple[bool, bytes]:

@@ -107,6 +107,19 @@ def refuse_other_arm(seen: Glance, arm: ArmModel, tool: Tool) -> None:
         )
 
 
+def refuse_power_supply(seen: Glance, tool: Tool, name: str) -> None:
+    """Refuse a tool connector whose outputs feed something in place of switching the gripper.
+
+    Raises:
+        RobotNotReady: they do.
+    """
+    if tool.voltage_v is not None and seen.has_dual_pin_power:
+        raise RobotNotReady(
+            f"The tool connector of the {name} is set to 'dual pin power', so that its outputs do not switch "
+            "the gripper; choose 'digital output' under Installation, General, Tool I/O, on its panel."
+        )
+
+
 def must_set_voltage(seen: Glance, tool: Tool, name: str) -> bool:
     """Whether the tool's supply is not what it should be.
 

@@ -16,9 +16,9 @@ import numpy.typing as npt
 
 from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import ArmModel
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import (
-    MoveRefused,
     NotInRemoteControl,
     ProgramStopped,
     RobotError,
@@ -28,6 +28,7 @@ from hardware.errors import (
 from hardware.interfaces import ReadyStep, RobotState
 from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
+from hardware.robots.ur.asking import refuse_beyond_safety, switch_tool_output
 from hardware.robots.ur.checks import (
     raise_if,
     refuse_local_control,
@@ -48,6 +49,7 @@ from hardware.robots.ur.readying import (
     next_step,
     refuse_foreign_program,
     refuse_other_arm,
+    refuse_power_supply,
     refuse_taken,
     take_step,
 )
@@ -58,9 +60,7 @@ _CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
 _RESTS_WITHIN_S = 0.3
 _RESTING_RAD_S = 0.01
 _DASHBOARD_STOP_S = 0.3
-_OUTPUT_WITHIN_S = 0.5
 _RELEASED_WITHIN_S = 0.5
-_POLL_S = 0.004
 
 _log = logging.getLogger(__name__)
 
@@ -92,6 +92,7 @@ class UR5Robot:
         tolerance_m: float = 0.005,
         tolerance_rad: float = radians(1),
         name: str | None = None,
+        cup_kg: float = 0.0,
     ) -> None:
         """Know what to connect to; entering connects.
 
@@ -105,6 +106,7 @@ class UR5Robot:
             tolerance_m: how far the reported tool may be from where the model's kinematics put it.
             tolerance_rad: how far it may be turned.
             name: what people call it; model and address without one.
+            cup_kg: of the payload; not there as long as no tool output is on.
         """
         self.name = name or f"{arm.name} at {address}"
         self.controller_version: tuple[int, ...] = ()
@@ -112,7 +114,8 @@ class UR5Robot:
         self._T_flange_tool = T_flange_tool
         self._tool = Tool(tool_voltage_v, (tolerance_m, tolerance_rad))
         self._address = address
-        self._payload = float(payload_kg), [float(x) for x in payload_center_m]
+        self._payload_kg = (float(payload_kg - cup_kg), float(payload_kg))
+        self._payload_center_m = [float(x) for x in payload_center_m]
         self._connection: _Connection | None = None
         self._move: UrMove | None = None
         self._refusal: RobotError | None = None
@@ -159,14 +162,16 @@ class UR5Robot:
         path = checked_path(self._arm, self.name, path_rad)
         return self._start("move_joints", path, float(speed_rad_s), float(acceleration_rad_s2), start=path[0])
 
-    def follow(self, trajectory: JointTrajectory) -> UrMove:
+    def follow(self, trajectory: JointTrajectory, margin: PathMargin | None = None) -> UrMove:
         """Start to follow a timed motion of the joints, at the pace of the controller's clock.
+
+        The driver stops an arm that leaves its path by more than the margin, or by 0.02 rad without one.
 
         Raises:
             RobotError: as with `move_joints`.
         """
         checked_path(self._arm, self.name, trajectory.joints_rad)
-        return self._start("follow", trajectory, start=trajectory.start_rad)
+        return self._start("follow", trajectory, margin, start=trajectory.start_rad)
 
     def stop(self) -> None:
         """Stop what moves and refuse further moves until `recover`; returns when the arm is at rest.
@@ -182,7 +187,7 @@ class UR5Robot:
         connection = self._connected()
         try:
             connection.worker.ask("stop", within_s=STOP_ANSWER_S)
-            if self._comes_to_rest(connection.worker):
+            if connection.worker.comes_to_rest(_RESTS_WITHIN_S, _RESTING_RAD_S):
                 return
             why = "it did not come to rest"
         except RobotError as error:
@@ -197,6 +202,10 @@ class UR5Robot:
             ) from error
         if self._move is not None:
             self._move.end(stopped)
+
+    def stopped_by(self) -> RobotError | None:
+        """What stopped it for good, moving or at rest, until it is recovered; none if nothing did."""
+        return self._refusal
 
     def look(self) -> Glance:
         """Look without writing anything to the controller, and check that it is the arm of the cell file.
@@ -251,25 +260,27 @@ class UR5Robot:
     def set_tool_output(self, output: int, value: bool) -> None:
         """Set a digital output of the tool (0 or 1) and see that it is set.
 
-        Measured with ur_rtde 1.6.5: the first write after a lost link is lost without an error. So the output
-        is read back, and written once more if need be.
+        Raises:
+            RobotError: it does not change, or the robot cannot be reached.
+        """
+        switch_tool_output(self._connected().worker, self.name, output, value)
+
+    def set_held(self, is_held: bool) -> None:
+        """Tell the controller whether the hand carries the cup, where the cell file says what it weighs.
 
         Raises:
-            MoveRefused: it does not change.
-            RobotError: the robot cannot be reached.
+            RobotError: the controller does not take it.
         """
-        worker = self._connected().worker
-        for _ in range(2):
-            worker.ask("set_tool_output", output, value)
-            deadline_s = time.monotonic() + _OUTPUT_WITHIN_S
-            while time.monotonic() < deadline_s:
-                if self.state().tool_outputs[output] == value:
-                    return
-                time.sleep(_POLL_S)
-        raise MoveRefused(
-            f"Tool output {output} of the {self.name} did not change; see under I/O on its panel whether "
-            "something else sets it."
-        )
+        if self._payload_kg[0] != self._payload_kg[1]:
+            self._connected().worker.ask("set_payload", self._payload_kg[is_held])
+
+    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
+        """Refuse a motion through configurations (N, 6) that the controller's safety system does not allow.
+
+        Raises:
+            RobotError: it does not allow one, or does not answer.
+        """
+        refuse_beyond_safety(self._connected().worker, self.name, joints_rad, label)
 
     def _connect(self) -> None:
         probe(self._address)
@@ -288,15 +299,18 @@ class UR5Robot:
             self.controller_version = dashboard.version()
             cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
             setup = Setup(
-                self._address, vector_from_pose(self._T_flange_tool).tolist(), *self._payload, cycle_s
+                self._address,
+                vector_from_pose(self._T_flange_tool).tolist(),
+                self._payload_kg[any(seen.tool_outputs)],
+                self._payload_center_m,
+                cycle_s,
             )
             worker = WorkerLink(setup, self._on_ended, self._on_lost)
             try:
                 raw = worker.state()
-                tool_pose, T_tool = raw["tool_pose"], self._T_flange_tool
-                refuse_other_kinematics(
-                    raw["joints_rad"], tool_pose, self._arm, T_tool, self._tool.tolerances
-                )
+                joints_rad, tool_pose = raw["joints_rad"], raw["tool_pose"]
+                T_tool, tolerances = self._T_flange_tool, self._tool.tolerances
+                refuse_other_kinematics(joints_rad, tool_pose, self._arm, T_tool, tolerances)
             except BaseException:
                 worker.end()
                 raise
@@ -311,6 +325,7 @@ class UR5Robot:
         refuse_other_model(dashboard, self._arm, self.name)
         seen = glance(self._address)
         refuse_other_arm(seen, self._arm, self._tool)
+        refuse_power_supply(seen, self._tool, self.name)
         return seen
 
     def _disconnect(self) -> None:
@@ -333,7 +348,7 @@ class UR5Robot:
             if self._refusal is not None:
                 raise self._refusal
             self._refuse_unready(worker.state(), start)
-            move = self._move = UrMove(self.name, lambda: _progress(worker), self.stop)
+            move = self._move = UrMove(self.name, worker.progress, self.stop)
             try:
                 worker.ask(request, *arguments)
             except RobotError as error:
@@ -382,17 +397,3 @@ class UR5Robot:
         except RobotLost:
             pass  # The watchdog ends the program.
         return error
-
-    def _comes_to_rest(self, worker: WorkerLink) -> bool:
-        deadline_s = time.monotonic() + _RESTS_WITHIN_S
-        while np.abs(worker.state()["joint_speeds_rad_s"]).max() > _RESTING_RAD_S:
-            if time.monotonic() > deadline_s:
-                return False
-            time.sleep(_POLL_S)
-        return True
-
-
-def _progress(worker: WorkerLink) -> float:
-    with suppress(RobotLost):
-        return float(worker.state()["progress"])
-    return 0.0

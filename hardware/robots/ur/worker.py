@@ -22,6 +22,7 @@ import rtde_io
 import rtde_receive
 
 from core.geometry import AnyArray, FloatArray
+from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import (
     DeviceError,
@@ -35,7 +36,7 @@ from hardware.errors import (
     TrackingLost,
 )
 from hardware.realtime import take_precedence
-from hardware.robots.ur.checks import deviation, output_changed, raise_if, unsafe
+from hardware.robots.ur.checks import deviation, moved_at_rest, output_changed, raise_if, unsafe
 from hardware.robots.ur.messages import (
     FIELDS,
     RUNTIME_PLAYING,
@@ -49,7 +50,7 @@ from hardware.robots.ur.messages import (
     StateMailbox,
     tool_outputs,
 )
-from hardware.robots.ur.motions import Following, JointMoves, Motion
+from hardware.robots.ur.motions import RESTING_RAD_S, Following, JointMoves, Motion, UsualLag
 
 _HANGS_S = 12
 """Later than the parent, which ends a worker that does not connect in time; this is for when it is gone."""
@@ -99,7 +100,10 @@ class _Worker:
         self._connection = connection
         self._mailbox = mailbox
         self._cycle_s = setup.cycle_s
+        self._payload_center_m = setup.payload_center_m
         self._motion: Motion | None = None
+        self._lag = UsualLag()
+        self._rest_rad: FloatArray | None = None
         self._outputs = (False, False)
         self._switched: set[int] = set()
         self._is_over = False
@@ -134,6 +138,8 @@ class _Worker:
                 self._due_s = time.monotonic() + _HEARD_S
             if is_fresh and self._motion is not None:
                 self._step(self._motion)
+            elif is_fresh and not self._is_over:
+                self._watch_rest()
             self._kick()
 
     def _listen_for_program(self) -> None:
@@ -157,22 +163,33 @@ class _Worker:
 
     def _set_up(self, setup: Setup) -> None:
         """Set tool and payload, and read them back: what the controller takes for granted must be ours."""
-        center = setup.payload_center_m
-        is_set = self._control.setTcp(setup.tool) and self._control.setPayload(setup.payload_kg, center)
-        if not is_set or np.abs(np.subtract(self._control.getTCPOffset(), setup.tool)).max() > _SAME:
+        if (
+            not self._control.setTcp(setup.tool)
+            or np.abs(np.subtract(self._control.getTCPOffset(), setup.tool)).max() > _SAME
+        ):
             raise MoveRefused(
-                "The controller did not take the tool's pose and payload; see what its panel shows, then "
-                "recover the robot."
+                "The controller did not take the tool's pose; see what its panel shows, then recover the "
+                "robot."
             )
+        self._ask_set_payload(setup.payload_kg)
+        self._control.setWatchdog(WATCHDOG_HZ)
+
+    def _ask_set_payload(self, payload_kg: float) -> None:
+        """Tell the controller what the flange carries, and read it back."""
+        self._control.setPayload(payload_kg, self._payload_center_m)
         deadline_s = time.monotonic() + _TAKEN_S
-        while abs(self._receive.getPayload() - setup.payload_kg) > _SAME:
+        while abs(self._receive.getPayload() - payload_kg) > _SAME:
             if time.monotonic() > deadline_s:
                 raise MoveRefused(
                     f"The controller reports a payload of {self._receive.getPayload():g} kg in place of "
-                    f"{setup.payload_kg:g} kg; see what its panel shows, then recover the robot."
+                    f"{payload_kg:g} kg; see what its panel shows, then recover the robot."
                 )
             time.sleep(_IDLE_S)
-        self._control.setWatchdog(WATCHDOG_HZ)
+
+    def _ask_are_safe(self, joints_rad: FloatArray) -> None:
+        for row in joints_rad:
+            if not self._control.isJointsWithinSafetyLimits(row.tolist()):
+                raise MoveRefused("The safety limits on the controller do not allow it.")
 
     def _serve(self, request: Request) -> None:
         if request.name in ("stop", "end"):
@@ -190,8 +207,8 @@ class _Worker:
     def _ask_move_joints(self, path_rad: FloatArray, speed_rad_s: float, acceleration_rad_s2: float) -> None:
         self._begin(JointMoves(self._control, path_rad, speed_rad_s, acceleration_rad_s2))
 
-    def _ask_follow(self, trajectory: JointTrajectory) -> None:
-        self._begin(Following(self._control, trajectory, self._cycle_s))
+    def _ask_follow(self, trajectory: JointTrajectory, margin: PathMargin | None) -> None:
+        self._begin(Following(self._control, trajectory, self._cycle_s, margin, self._lag))
 
     def _ask_set_tool_output(self, output: int, value: bool) -> None:
         if not self._io.setToolDigitalOut(output, value):
@@ -206,7 +223,7 @@ class _Worker:
             raise MoveRefused("The arm is still moving; stop it or wait until it stops.")
         self._outputs = tool_outputs(self._latest)
         self._switched.clear()
-        self._motion = motion
+        self._motion, self._rest_rad = motion, None
 
     def _stop(self, request: Request) -> None:
         """Stop for good: only a new worker moves again, so no request in flight can begin a move later."""
@@ -247,6 +264,18 @@ class _Worker:
                 self._brake(motion)
                 error = self._reason(error)
         self._connection.send(Ended(error, motion.progress))
+
+    def _watch_rest(self) -> None:
+        """Between two motions nothing moves, and the control program is ours: it runs without a break."""
+        raw = self._latest
+        if self._rest_rad is None and np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S:
+            self._rest_rad = raw["joints_rad"]
+        error = deviation(raw)
+        if error is None and self._rest_rad is not None:
+            error = moved_at_rest(raw["joints_rad"], self._rest_rad)
+        if error is not None:
+            self._is_over = True
+            self._connection.send(Ended(self._reason(error), 0.0))
 
     def _watch_outputs(self) -> None:
         """What we switched ourselves is watched from the state on that shows it.
@@ -319,6 +348,7 @@ class _Worker:
             raw["safety_mode"] = receive.getSafetyMode()
             raw["runtime_state"] = receive.getRuntimeState()
             raw["output_bits"] = receive.getActualDigitalOutputBits()
+            raw["tool_force_n"] = np.linalg.norm(receive.getActualTCPForce()[:3])
         return raw
 
 

@@ -40,6 +40,7 @@ class Arm:
         slider: share of the programmed speed, 0 to 1.
         is_held: whether a pause or a protective stop keeps the motion from going on.
         stuck: joints (0 to 5) that do not follow.
+        safe_rad: (2, 6) the lowest and highest angles that the safety system allows.
     """
 
     def __init__(self, model: ArmModel, joints_rad: npt.ArrayLike) -> None:
@@ -53,6 +54,7 @@ class Arm:
         self.slider = 1.0
         self.is_held = False
         self.stuck: set[int] = set()
+        self.safe_rad = np.array([model.lower_rad, model.upper_rad])
         self._pace = 1.0
         self._motion: Motion | None = None
         self._next: Callable[[FloatArray], Trajectory] | None = None
@@ -68,6 +70,16 @@ class Arm:
         return bool(np.abs(self.target_speeds_rad_s).max() > _MOVING_RAD_S)
 
     @property
+    def is_beyond_safety(self) -> bool:
+        """Whether a joint is where the safety system does not allow it."""
+        return not self.is_safe(self.joints_rad)
+
+    def is_safe(self, joints_rad: npt.ArrayLike) -> bool:
+        """Whether the safety system allows a configuration (6,)."""
+        low, high = self.safe_rad
+        return bool(((joints_rad >= low) & (joints_rad <= high)).all())
+
+    @property
     def is_paused(self) -> bool:
         """Whether a pause has brought it to rest."""
         return self.is_held and not self.is_moving
@@ -78,6 +90,14 @@ class Arm:
         if isinstance(self._motion, PlannedMotion) and self._next is None:
             return self._motion.time_s
         return 0.0
+
+    def jump(self, joint: int, angle_rad: float) -> None:
+        """Be elsewhere by a joint's angle, with the target: an encoder slipped, or a clamp."""
+        slip = np.zeros(6)
+        slip[joint] = angle_rad
+        self.joints_rad, self.target_rad = self.joints_rad + slip, self.target_rad + slip
+        if isinstance(self._motion, ServoMotion):
+            self._motion.joints_rad = self.target_rad
 
     def run(self, make: Callable[[FloatArray], Trajectory]) -> None:
         """Begin a trajectory from rest, made for the joints (6,) where it begins; brake first if need be."""

@@ -52,6 +52,11 @@ class Controller:
         ignores_uploads: a fault: scripts come and nothing happens.
         tool_voltage_v: supply of the tool connector.
         ignores_outputs: a fault: outputs are written and nothing happens.
+        dashboard_delay_s: how late the dashboard hears every line.
+        speed_up: how many times faster than the wall clock its clock runs.
+        tool_force_n: what pushes at the tool.
+        has_dual_pin_power: whether the tool's outputs are its power supply (e-Series).
+        is_frozen: whether nothing happens any more, for now.
         digital_outputs: bits; 16 and 17 are the tool's.
     """
 
@@ -70,6 +75,11 @@ class Controller:
         self.ignores_uploads = False
         self.tool_voltage_v = 24
         self.ignores_outputs = False
+        self.dashboard_delay_s = 0.0
+        self.speed_up = 1.0
+        self.tool_force_n = 0.0
+        self.has_dual_pin_power = False
+        self.is_frozen = False
         self.digital_outputs = 0
         self._cycles = 0
         self._program: ControlProgram | ForeignProgram | None = None
@@ -80,6 +90,8 @@ class Controller:
 
     def step(self) -> None:
         """One cycle."""
+        if self.is_frozen:
+            return
         self._cycles += 1
         self.time_s = self._cycles * self.dt_s
         self.journal.set_time(self.time_s)
@@ -94,6 +106,8 @@ class Controller:
             self._end_program()
         if self._program is not None and self._program.is_over:
             self._end_program()
+        if self.arm.is_beyond_safety:
+            self.protective_stop()
         self._advance_runtime()
         self._advance_power()
 
@@ -217,6 +231,10 @@ class Controller:
         """Switch the tool's outputs off, as a short circuit or a broken cable does."""
         self.digital_outputs &= ~(0b11 << TOOL_OUTPUT_BIT)
         self.journal.note("outputs lost")
+
+    def reduce(self, is_reduced: bool) -> None:
+        """Let the safety system be in reduced mode, or in its normal one."""
+        self.safety_mode = SafetyMode.REDUCED if is_reduced else SafetyMode.NORMAL
 
     def set_model(self, model: ArmModel) -> None:
         """Be another arm from now on: a fault of the cell, found by its kinematics."""

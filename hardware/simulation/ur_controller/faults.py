@@ -13,9 +13,19 @@
 | `program hangs` | it runs on but takes no further command |
 | `foreign still`, `foreign moving` | another program takes over without a gap; it stands, or turns the base |
 | `foreign gap still`, `foreign gap moving` | the same after a moment in which no program runs |
+| `pace FACTOR` | the controller's clock runs so many times faster than the wall's |
+| `freeze`, `thaw` | the whole controller stands still, silent; it goes on |
+| `reduced`, `normal` | the safety system's mode |
+| `dual pin power`, `single pin power` | what the tool's connector is set to |
 | `output lost`, `ignore outputs`, `heed outputs` | the tool's outputs go off; writes do nothing; do again |
 | `slider SHARE`, `model NAME` | the speed slider; another arm's kinematics |
+| `calibration MM` | the forearm is longer by this than the model's |
+| `jump JOINT RAD` | a joint (1 to 6) is elsewhere at once |
+| `limit JOINT LOW HIGH`, `no limits` | the safety system's, in rad; as the arm's own |
+| `force N` | something pushes at the tool |
+| `dashboard delay SECONDS` | the dashboard hears every line so late |
 | `link drop [SECONDS]` | every connection is closed; new ones are refused that long |
+| `drop dashboard`, `drop script`, `drop rtde [NUMBER]` | these connections are closed, of many the nth |
 | `link silent [SECONDS]` | everything stays open, nothing passes; for ever without a time |
 | `latency MS [JITTER_MS]` | on everything, in each direction |
 | `refuse [SECONDS]` | new connections are refused |
@@ -31,8 +41,11 @@ import asyncio
 import json
 import os
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.identity import MODELS
@@ -41,6 +54,7 @@ from hardware.simulation.ur_controller.link import Network
 _KILLED = 9
 _NEWEST = 200
 _OTHER_CLIENT = object()
+_SIGNED = ("calibration", "jump", "limit")
 
 
 class FaultRefused(Exception):
@@ -73,6 +87,15 @@ class FaultInjector:
             "remote": lambda: setattr(c, "is_remote", True),
             "ignore uploads": lambda: setattr(c, "ignores_uploads", True),
             "heed uploads": lambda: setattr(c, "ignores_uploads", False),
+            "freeze": lambda: self._freeze(True),
+            "thaw": lambda: self._freeze(False),
+            "reduced": lambda: c.reduce(True),
+            "normal": lambda: c.reduce(False),
+            "dual pin power": lambda: setattr(c, "has_dual_pin_power", True),
+            "single pin power": lambda: setattr(c, "has_dual_pin_power", False),
+            "no limits": lambda: self._limit([]),
+            "drop dashboard": lambda: network.drop("dashboard"),
+            "drop script": lambda: network.drop("script"),
             "program hangs": c.hang_program,
             "foreign still": lambda: c.run_foreign(is_moving=False, has_gap=False),
             "foreign moving": lambda: c.run_foreign(is_moving=True, has_gap=False),
@@ -94,6 +117,13 @@ class FaultInjector:
             "latency": self._delay,
             "stick": self._stick,
             "slider": self._slide,
+            "calibration": self._miscalibrate,
+            "jump": self._jump,
+            "limit": self._limit,
+            "force": lambda numbers: setattr(c, "tool_force_n", _one(numbers)),
+            "pace": self._pace,
+            "dashboard delay": lambda numbers: setattr(c, "dashboard_delay_s", _one(numbers)),
+            "drop rtde": self._drop_rtde,
         }
 
     def take(self, line: str) -> str:
@@ -155,7 +185,7 @@ class FaultInjector:
             return self._plain[line]
         for name, numbered in self._with_numbers.items():
             if line == name or line.startswith(name + " "):
-                numbers = _numbers(line[len(name) :].split())
+                numbers = _numbers(line[len(name) :].split(), is_signed=name in _SIGNED)
                 return partial(numbered, numbers)
         if line.startswith("model ") and line[6:] in MODELS:
             return lambda: self._controller.set_model(MODELS[line[6:]])
@@ -187,9 +217,40 @@ class FaultInjector:
         if numbers:
             self._later(numbers[0], lambda: self._refuse(False))
 
+    def _freeze(self, is_frozen: bool) -> None:
+        self._controller.is_frozen = is_frozen
+        self._network.silence(is_frozen)
+
+    def _pace(self, numbers: list[float]) -> None:
+        _must(1 <= _one(numbers) <= 20, "a factor from 1 to 20")
+        self._controller.speed_up = numbers[0]
+
+    def _drop_rtde(self, numbers: list[float]) -> None:
+        self._network.drop("rtde", int(numbers[0]) if numbers else None)
+
+    def _miscalibrate(self, numbers: list[float]) -> None:
+        nominal = self._controller.identity.model
+        first, upper_arm_m, forearm_m, *_ = nominal.a_m
+        a_m = (first, upper_arm_m, forearm_m - _one(numbers) / 1000, 0.0, 0.0, 0.0)
+        self._controller.set_model(replace(nominal, a_m=a_m))
+
+    def _jump(self, numbers: list[float]) -> None:
+        _must(len(numbers) == 2 and numbers[0] in range(1, 7), "a joint from 1 to 6, and an angle")
+        self._controller.arm.jump(int(numbers[0]) - 1, numbers[1])
+
+    def _limit(self, numbers: list[float]) -> None:
+        """Without numbers: no limits but the arm's own."""
+        arm = self._controller.arm
+        if not numbers:
+            arm.safe_rad = np.array([arm.model.lower_rad, arm.model.upper_rad])
+            return
+        _must(len(numbers) == 3 and numbers[0] in range(1, 7), "a joint from 1 to 6, and two angles")
+        arm.safe_rad[:, int(numbers[0]) - 1] = numbers[1:]
+
     def _restore(self) -> None:
         self._network.latency_s = self._network.jitter_s = 0.0
-        self._network.silence(False)
+        self._controller.dashboard_delay_s = 0.0
+        self._freeze(False)
         self._refuse(False)
 
     def _delay(self, numbers: list[float]) -> None:
@@ -211,10 +272,15 @@ def _must(is_so: bool, sentence: str) -> None:
         raise FaultRefused(sentence)
 
 
-def _numbers(words: list[str]) -> list[float]:
+def _one(numbers: list[float]) -> float:
+    _must(len(numbers) == 1, "one number is wanted")
+    return numbers[0]
+
+
+def _numbers(words: list[str], is_signed: bool = False) -> list[float]:
     try:
         numbers = [float(word) for word in words]
     except ValueError as error:
         raise FaultRefused(f"'{' '.join(words)}' should be numbers") from error
-    _must(all(number >= 0 for number in numbers), "numbers must not be negative")
+    _must(is_signed or all(number >= 0 for number in numbers), "numbers must not be negative")
     return numbers

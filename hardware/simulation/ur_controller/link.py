@@ -6,6 +6,7 @@ import asyncio
 import random
 from collections import deque
 from collections.abc import Callable
+from itertools import count
 from typing import cast
 
 from hardware.simulation.ur_controller.journal import Journal
@@ -52,9 +53,10 @@ class Network:
         """Forget a connection that is closed."""
         self._links.discard(link)
 
-    def drop(self) -> None:
-        """Close every connection at once."""
-        for link in self.links:
+    def drop(self, name: str = "", number: int | None = None) -> None:
+        """Close every connection at once; or those of a name, or the nth of these, as they came, from 1."""
+        links = sorted((link for link in self.links if name in ("", link.name)), key=lambda link: link.number)
+        for link in links if number is None else links[number - 1 : number]:
             link.abort()
 
     def silence(self, is_silent: bool) -> None:
@@ -65,12 +67,19 @@ class Network:
 
 
 class Link(asyncio.Protocol):
-    """One connection of a client; subclasses say what is received and answered."""
+    """One connection of a client; subclasses say what is received and answered.
+
+    Attributes:
+        name: of the server.
+        number: rises from connection to connection.
+    """
 
     name = ""
+    _numbers = count()
 
     def __init__(self, network: Network, journal: Journal) -> None:
         """Wait for the connection to be made."""
+        self.number = next(self._numbers)
         self._network = network
         self._journal = journal
         self._transport: asyncio.Transport | None = None

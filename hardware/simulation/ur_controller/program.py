@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.geometry import FloatArray, invert_pose
-from core.motion.kinematics import flange_pose, within_limits
+from core.motion.kinematics import flange_pose
 from hardware.robots.joint_motion import JointMotion
 from hardware.robots.ur.pose_vectors import pose_from_vector, vector_from_pose
 from hardware.simulation.ur_controller.arm import Arm
@@ -238,7 +238,7 @@ def _has_solution(context: CommandContext, near_rad: FloatArray) -> None:
 
 
 def _joints_are_safe(context: CommandContext) -> None:
-    _answer(context, bool(within_limits(context.arm.model, context.six()).all()))
+    _answer(context, context.arm.is_safe(context.six()))
 
 
 HANDLERS: dict[int, Handler] = {

@@ -74,6 +74,9 @@ class Outputs:
         values["target_speed_fraction"] = (c.arm.slider,)
         values["actual_digital_output_bits"] = (c.digital_outputs,)
         values["tool_output_voltage"] = (c.tool_voltage_v,)
+        values["tool_output_mode"] = (int(c.has_dual_pin_power),)
+        values["tcp_force_scalar"] = (c.tool_force_n,)
+        values["actual_TCP_force"] = (0.0, 0.0, -c.tool_force_n, 0.0, 0.0, 0.0)
         values["payload"] = (c.arm.payload_kg,)
         values["payload_cog"] = c.arm.payload_center_m
         values["joint_mode"] = (_JOINT_RUNNING if is_powered else _JOINT_POWER_OFF,) * 6

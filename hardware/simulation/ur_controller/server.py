@@ -56,6 +56,7 @@ class ControllerServer:
         """Prepare; nothing listens yet."""
         self._settings = settings
         self._controller = Controller(settings.identity, settings.joints_rad)
+        self._controller.speed_up = settings.speed_up
         self._outputs = Outputs(self._controller)
         self._network = Network()
         self._injector = FaultInjector(self._controller, self._network, self._refuse)
@@ -142,9 +143,11 @@ class ControllerServer:
     async def _cycle(self) -> None:
         """Step the controller by the wall clock, several cycles at once where a wake-up is late."""
         loop = asyncio.get_running_loop()
-        period_s = self._controller.dt_s / self._settings.speed_up
-        begin_s, done = loop.time(), 0
+        begin_s, done, speed_up = loop.time(), 0, 0.0
         while True:
+            if speed_up != self._controller.speed_up:
+                begin_s, done, speed_up = loop.time(), 0, self._controller.speed_up
+                period_s = self._controller.dt_s / speed_up
             due = int((loop.time() - begin_s) / period_s) - done
             if due * period_s > _STOOD_STILL_S:
                 begin_s += due * period_s

@@ -6,6 +6,7 @@ Source of the dashboard's wording: Universal Robots, "Dashboard Server CB-Series
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Callable
 
 from hardware.simulation.ur_controller.controller import Controller, RuntimeState
@@ -82,7 +83,11 @@ class DashboardLink(LineLink):
             self.send_line("Disconnected")
             self.finish()
             return
-        self.send_line(self._answer(line))
+        if self._controller.dashboard_delay_s:
+            delay_s = self._controller.dashboard_delay_s
+            asyncio.get_running_loop().call_later(delay_s, lambda: self.send_line(self._answer(line)))
+        else:
+            self.send_line(self._answer(line))
 
     def _answer(self, line: str) -> str:
         command = line.lower()

@@ -8,7 +8,10 @@ from threading import Event, Timer
 import pytest
 
 from app.cli.interrupts import Interrupts
-from tests.patience import HANG_S
+from app.cli.operators import TerminalOperator
+from app.cli.terminal import TerminalReporter
+from core.errors import Cancelled
+from tests.patience import HANG_S, wait_until
 
 
 def send(number):
@@ -44,3 +47,16 @@ def test_each_request_is_heard_and_none_afterwards():
         send(signal.SIGINT)
         Event().wait(HANG_S)  # another thread may get the signal: the main thread hears of it in a moment
     assert len(heard) == 2
+
+
+def test_after_sigterm_nobody_is_asked_whether_to_go_on(monkeypatch, tmp_path):
+    monkeypatch.setattr("app.cli.terminal._PATIENCE_S", HANG_S)
+    asked = []
+    monkeypatch.setattr(TerminalReporter, "ask", lambda _self, question: asked.append(question))
+    with TerminalReporter() as terminal:
+        send(signal.SIGTERM)
+        wait_until(lambda: terminal._interrupts.was_terminated and terminal._leaving is not None)
+        with pytest.raises(Cancelled, match="at rest where it was stopped"):
+            TerminalOperator(tmp_path, terminal).confirm_recovery(Cancelled("Stopped."), is_repeated=False)
+        terminal._leaving.cancel()
+    assert asked == []

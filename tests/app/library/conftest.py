@@ -18,7 +18,7 @@ from core.imagination.judgement import Judgement
 from core.imagination.recording import Recorder
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.results import Drop, Footprint, PourChoice, PourGrid
-from core.imagination.risk import Tries
+from core.imagination.risk.tries import Tries
 from core.mesh import TriangleMesh
 from core.mesh_file import read_ply, write_ply
 from core.motion.pour.feasibility import PourFeasibility, PourMotions

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from app.operations.calibration.capture import CaptureObserver
 from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
 from app.operations.calibration.check import check_cell
 from app.operations.calibration.hand_eye import calibrate_cell, undo_calibration
@@ -31,8 +32,9 @@ def measured_cell(name="bench", seed=0, **set_up):
     return path
 
 
-def states(path):
-    return {step.name: step.state for step in steps(path)}
+def states(path, *names):
+    found = {step.name: step.state for step in steps(path)}
+    return {name: found[name] for name in names or ("board", "hand-eye", "check")}
 
 
 def calibrated(path, reporter=None, **options):
@@ -47,7 +49,7 @@ def comments(path):
 def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
     path = new_cell("Bench one", is_simulated=True, seed=3)
     assert path == cells / "bench-one.toml" == cell_path("bench one")
-    assert set(states(path).values()) == {StepState.OPEN}
+    assert {step.state for step in steps(path)} == {StepState.OPEN}
     with pytest.raises(InputError, match="No calibration board is entered"):
         calibrated(path)
     pdf = enter_board(path, BoardSpec(), "letter", None)
@@ -88,16 +90,18 @@ def test_an_interrupted_calibration_goes_on_with_what_was_taken():
     path = measured_cell(seed=1)
     reporter = Reporter()
 
-    def stop_after_four(look, n_usable):
+    def stop_after_four(look, n_usable, image):
         if n_usable == 4:
             reporter.cancel()
 
     before = path.read_bytes()
     with pytest.raises(Cancelled):
-        calibrated(path, reporter, taken=stop_after_four)
+        calibrated(path, reporter, observer=CaptureObserver(taken=stop_after_four))
     assert path.read_bytes() == before
     n_new = []
-    found = calibrated(path, taken=lambda look, n_usable: n_new.append(n_usable))
+    found = calibrated(
+        path, observer=CaptureObserver(taken=lambda look, n_usable, image: n_new.append(n_usable))
+    )
     assert n_new[0] == 5
     assert found.n_views == N_VIEWS
 

@@ -69,7 +69,8 @@ def test_the_operators_pour_is_the_target_and_everything_says_so(session, motion
     assert f"{WHY} (the program would choose " in target.note
     assert f"at {1000 * task.grid.indent_m[program.j]:.0f} mm)" in target.note
 
-    robot = KinematicRobot(ARMS[task.settings.robot.model], task.settings.robot.home_rad, is_instant=True)
+    tool = task.settings.gripper.grasp_pose
+    robot = KinematicRobot(ARMS[task.settings.robot.model], task.settings.robot.home_rad, True, tool)
     arm = Arm(task.settings, robot, SimulatedGripper(), motion_scene(task.settings))
     pouring = Pouring(arm, task.cell, target, session, Reporter())
     fresh = pouring.plan()

@@ -1,9 +1,11 @@
 """A pour is held against the chance of spilling nothing that is wanted."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from core.imagination.advice import advice_against
-from core.imagination.results import NOT_TRIED, PourRisk
+from core.imagination.risk.result import NOT_TRIED, FewerCandies, PourRisk
 
 CLEAN, DOUBTFUL, SPILLING = (0, 0), (0, 1), (0, 2)
 RISK = PourRisk(
@@ -26,3 +28,9 @@ def test_the_sentence_has_the_bound_the_trials_and_what_is_wanted():
 def test_whoever_wants_no_certainty_or_tries_nothing_gets_no_advice():
     assert advice_against(RISK, *SPILLING, 0.0) == ""
     assert advice_against(None, *SPILLING, 0.6) == ""
+
+
+def test_a_smaller_amount_that_is_sure_enough_is_named_with_its_trials():
+    said = advice_against(replace(RISK, fewer=FewerCandies(40, 2, 1, 8, 8)), *DOUBTFUL, 0.6)
+    assert said.endswith("Ask for 40 candies: with these it is at least 72 % likely (8 of 8 trials clean).")
+    assert "Ask for" not in advice_against(RISK, *DOUBTFUL, 0.6)

@@ -8,6 +8,7 @@ import numpy as np
 from core.geometry import look_at, make_pose, rotation_z
 from core.mesh import TriangleMesh
 from core.quality.next_views import DepthCamera
+from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import CropBox, RgbdFrame, Scan
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS, HEIGHT, WIDTH, SimulatedDepthCamera
 from hardware.simulation.depth_noise import DepthNoise, disturb_pose
@@ -17,6 +18,7 @@ from tests.ideal_rings import SCAN_RINGS, scan_views
 
 PLATFORM_M = 0.08
 TABLE_M = 0.015
+VOXEL_M = 0.004
 BOX = CropBox((-0.15, -0.15, 0.03), (0.15, 0.15, 0.32))
 FEW_RINGS = SCAN_RINGS[::2]
 LOW_RINGS = SCAN_RINGS[:3]
@@ -72,3 +74,17 @@ def dome(target_m) -> np.ndarray:
                     pose @ make_pose(rotation_z(radians(roll)), [0, 0, 0]) for roll in range(0, 360, 45)
                 ]
     return np.array(poses)
+
+
+def shaft(unseen_below_m: float = 0.1, floor_m: float = 0.0) -> TsdfVolume:
+    """A square shaft of 11 voxels within a wall of 3, 120 mm high, of which only the upper part was seen."""
+    volume = TsdfVolume((-0.06, -0.06, 0.0), (0.064, 0.064, 0.2), VOXEL_M, 0.016)
+    steps = np.arange(31) - 15
+    across = np.maximum(abs(steps[:, None]), abs(steps))[:, :, None]
+    layers = np.arange(50)[None, None]
+    volume.weight[:] = 1
+    volume.distance[(across > 5) & (across <= 8) & (layers < 30)] = -0.5
+    volume.weight[(across <= 5) & (layers < unseen_below_m / VOXEL_M)] = 0
+    is_floor = (across <= 5) & (layers < floor_m / VOXEL_M)
+    volume.weight[is_floor], volume.distance[is_floor] = 1, -0.5
+    return volume

@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 
 from core.quality.cavity import coarse_volume, find_hidden_cavity
-from core.reconstruction.tsdf import TsdfVolume
 from core.scan import CropBox
 from hardware.simulation.objects import builtin_object
-from tests.core.quality.studio import BOX, FEW_RINGS, PLATFORM_M, on_platform, upside_down
-
-VOXEL_M = 0.004
+from tests.core.quality.studio import BOX, FEW_RINGS, PLATFORM_M, VOXEL_M, on_platform, shaft, upside_down
 
 
 @pytest.mark.parametrize("name", ["block", "plate", "mug", "bowl upside down"])
@@ -32,20 +29,8 @@ def test_a_vase_hides_its_inside(vase, vase_scan):
     assert 0.02 < cavity.depth_m < 0.15
 
 
-def hand_made(unseen_below_m: float = 0.1) -> TsdfVolume:
-    """A square shaft of 11 voxels within a wall of 3, 120 mm high, of which only the upper part was seen."""
-    volume = TsdfVolume((-0.06, -0.06, 0.0), (0.064, 0.064, 0.2), VOXEL_M, 0.016)
-    steps = np.arange(31) - 15
-    across = np.maximum(abs(steps[:, None]), abs(steps))[:, :, None]
-    layers = np.arange(50)[None, None]
-    volume.weight[:] = 1
-    volume.distance[(across > 5) & (across <= 8) & (layers < 30)] = -0.5
-    volume.weight[(across <= 5) & (layers < unseen_below_m / VOXEL_M)] = 0
-    return volume
-
-
 def test_area_volume_depth_and_width_of_a_shaft():
-    cavity = find_hidden_cavity(hand_made(), platform_height_m=0.02)
+    cavity = find_hidden_cavity(shaft(), platform_height_m=0.02)
     assert len(cavity.frontier_m) == 11 * 11
     assert cavity.area_m2 == pytest.approx(121 * VOXEL_M**2)
     assert np.allclose(cavity.frontier_m[:, 2], 0.096)
@@ -56,17 +41,17 @@ def test_area_volume_depth_and_width_of_a_shaft():
 
 
 def test_what_lies_below_the_platform_does_not_count():
-    assert len(find_hidden_cavity(hand_made(), platform_height_m=0.1).frontier_m) == 0
+    assert len(find_hidden_cavity(shaft(), platform_height_m=0.1).frontier_m) == 0
 
 
 def test_a_shaft_open_to_one_side_encloses_nothing():
-    volume = hand_made()
+    volume = shaft()
     volume.distance[15:, 15, :] = 1.0
     assert len(find_hidden_cavity(volume, platform_height_m=0.02).frontier_m) == 0
 
 
 def test_a_gap_of_the_noise_is_no_cavity():
-    volume = hand_made(unseen_below_m=0.0)
+    volume = shaft(unseen_below_m=0.0)
     volume.weight[14:16, 14:16, 10:11] = 0
     assert len(find_hidden_cavity(volume, platform_height_m=0.02).frontier_m) == 0
 

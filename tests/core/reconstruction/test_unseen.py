@@ -7,26 +7,9 @@ from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
-from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import THINNEST_WALL_M, find_unseen_inside
 from hardware.simulation.objects import builtin_object
-from tests.core.quality.studio import LOW_RINGS, on_platform, tube
-
-VOXEL_M = 0.004
-
-
-def shaft(unseen_below_m: float, floor_m: float = 0.0) -> TsdfVolume:
-    """A square shaft of 11 voxels within a wall of 3, 120 mm high, of which only the upper part was seen."""
-    volume = TsdfVolume((-0.06, -0.06, 0.0), (0.064, 0.064, 0.2), VOXEL_M, 0.016)
-    steps = np.arange(31) - 15
-    across = np.maximum(abs(steps[:, None]), abs(steps))[:, :, None]
-    layers = np.arange(50)[None, None]
-    volume.weight[:] = 1
-    volume.distance[(across > 5) & (across <= 8) & (layers < 30)] = -0.5
-    volume.weight[(across <= 5) & (layers < unseen_below_m / VOXEL_M)] = 0
-    is_floor = (across <= 5) & (layers < floor_m / VOXEL_M)
-    volume.weight[is_floor], volume.distance[is_floor] = 1, -0.5
-    return volume
+from tests.core.quality.studio import LOW_RINGS, VOXEL_M, on_platform, shaft, tube
 
 
 def test_an_unseen_shaft_may_be_hollow_but_for_a_floor_as_thin_as_floors_are():

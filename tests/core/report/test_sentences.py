@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk, joined
+from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.risk.result import PourRisk, joined
 from core.imagination.verdict import Verdict
 from core.report import (
     choice_sentence,

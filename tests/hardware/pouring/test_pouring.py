@@ -33,7 +33,8 @@ def fresh_plan(tmp_path_factory):
 
 
 def an_arm(gripper=None):
-    robot = KinematicRobot(ARMS[SETTINGS.robot.model], SETTINGS.robot.home_rad, is_instant=True)
+    tool = SETTINGS.gripper.grasp_pose
+    robot = KinematicRobot(ARMS[SETTINGS.robot.model], SETTINGS.robot.home_rad, True, tool)
     return Arm(SETTINGS, robot, gripper or SimulatedGripper(), motion_scene(SETTINGS))
 
 

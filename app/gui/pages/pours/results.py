@@ -20,7 +20,8 @@ from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Recording
 from core.imagination.rendering.replay import make_replay
 from core.imagination.rendering.shapes import candy_mesh, cup_surface
-from core.imagination.results import Containability, PourChoice, PourGrid, PourRisk
+from core.imagination.results import Containability, PourChoice, PourGrid
+from core.imagination.risk.result import PourRisk
 from core.mesh_file import read_ply
 from core.motion.pour.feasibility import PourFeasibility, PourMotions
 from core.parameters.imagination import PouringParameters

@@ -11,14 +11,15 @@ from PySide6.QtGui import QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QListView, QPushButton, QVBoxLayout, QWidget
 from typing_extensions import override
 
+from app.gui.pages.cell_model import ShownCell
 from app.gui.pages.page import SplitView
-from app.gui.pages.scan.loading import ScanCell
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import text_label
 from app.gui.views.scene import Frustum, PreparedMesh, Scene3D
 from app.gui.views.state_mark import State, StateMark
 from app.gui.views.thumbnails import ThumbnailGrid
 from app.jobs.scan_events import ViewProgress
+from core.scan.model import CropBox
 
 _ARM, _BOX, _OBJECT, _REACH, _TABLE, _VIEWS = "arm", "box", "object", "reach", "table", "views"
 _GROUND_SIZES = 1.6
@@ -125,7 +126,8 @@ class ScanView(QWidget):
         self.scene.setAccessibleName(self.tr("The cell in 3D"))
         self.scene.set_empty_text(self.tr("Reading the cell file …"))
         self.scene.picked.connect(self._pick)
-        self._cell: ScanCell | None = None
+        self._cell: ShownCell | None = None
+        self._box: CropBox | None = None
         self._placed: list[int] = []
         self._is_alone = False
         self._casters_m: npt.NDArray[np.float32] = np.empty((0, 3), dtype=np.float32)
@@ -133,7 +135,7 @@ class ScanView(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.scene)
 
-    def show_cell(self, cell: ScanCell) -> None:
+    def show_cell(self, cell: ShownCell) -> None:
         """Show another cell, its arm at rest."""
         self._cell = cell
         if not self._is_alone:
@@ -156,6 +158,12 @@ class ScanView(QWidget):
             self.scene.clear()
             if self._cell is not None:
                 self._draw_cell(self._cell)
+
+    def show_box(self, box: CropBox | None) -> None:
+        """Show the box that a scan's plan laid around the object; none: the cell's."""
+        self._box = box
+        if self._cell is not None and not self._is_alone:
+            self._draw_box(self._cell)
 
     def show_mesh(self, mesh: PreparedMesh | None) -> None:
         """Show what the views saw."""
@@ -184,18 +192,23 @@ class ScanView(QWidget):
         if cell is not None and cell.has_arm and not self._is_alone:
             self.scene.set_joints(_ARM, cell.model.home_rad if joints_rad is None else joints_rad)
 
-    def _draw_cell(self, cell: ScanCell) -> None:
+    def _draw_cell(self, cell: ShownCell) -> None:
         scene, model = self.scene, cell.model
         scene.remove(_ARM)
         scene.remove(_REACH)
         model.draw_furniture(scene)
         model.draw_platform_top(scene, self._casters_m)
-        scene.set_box(_BOX, cell.box_min_m, cell.box_max_m)
+        self._draw_box(cell)
         if cell.has_arm:
             scene.set_arm(_ARM, model.arm, model.home_rad, tools=model.tools)
             # Two points nobody sees: with them in view, the arm is, wherever a scan takes it.
             scene.set_points(_REACH, cell.reach_m, color="scene", size_px=1)
         scene.fit(_TABLE, _BOX, _VIEWS, _REACH)
+
+    def _draw_box(self, cell: ShownCell) -> None:
+        box = self._box
+        corners = (cell.box_min_m, cell.box_max_m) if box is None else (box.min_m, box.max_m)
+        self.scene.set_box(_BOX, *corners)
 
     def _pick(self, layer: str, index: int) -> None:
         if layer == _VIEWS and index < len(self._placed):

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from app.gui.pages.cell_model import CellModel, cell_model
 from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
 from app.jobs.scan_events import ViewProgress
 from app.jobs.scan_work import planned_pose
 from app.library.session_folder import UNFINISHED_SCAN
 from core.errors import PoursightError
-from core.motion.kinematics import link_poses
 from core.session import Session
 
 if TYPE_CHECKING:
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from core.mesh import TriangleMesh
     from core.quality.measures import ScanQuality
     from core.reconstruction.result import Reconstruction
+    from core.scan.model import CropBox
     from hardware.cell import CellSettings
     from hardware.scanning.views import ViewRecord
 
@@ -32,28 +31,6 @@ Source = Literal["nothing", "interrupted", "scan", "mesh"]
 """Nothing yet; views of an interrupted scan; a finished scan; an imported mesh."""
 COLOR_ENDING, DEPTH_ENDING, POSE_ENDING = ".color.png", ".depth.png", ".pose.txt"
 FRAMES = "rgbd"
-_MARGIN_M = 0.04
-_ARM_M = 0.08
-"""About the middles of the arm's links."""
-
-
-@dataclass(frozen=True, eq=False)
-class ScanCell:
-    """What is shown of a cell.
-
-    Attributes:
-        model: arm and furniture.
-        has_arm: whether something moves; a cell that plays a recorded scan has no arm.
-        reach_m: (2, 3) corners of a box around the arm at rest and at all views.
-        box_min_m: (3,) lower corner of the box that holds the object.
-        box_max_m: (3,) upper corner.
-    """
-
-    model: CellModel
-    has_arm: bool
-    reach_m: FloatArray
-    box_min_m: FloatArray
-    box_max_m: FloatArray
 
 
 @dataclass(frozen=True)
@@ -83,6 +60,7 @@ class ScanContents:
         views: in their order, planned ones among them.
         pictures: of those that have images, by name.
         object_name: of what is scanned in a simulated cell, or its mesh file; none in other cells.
+        box: that the scan's plan laid around the object; none: the cell's.
         is_of_cell: whether the chosen cell can take further views of it.
         quality: how good the scan is; none before it was checked.
         pose_error_m: how far a view's surface errs, poses corrected as far as they were; none if not known.
@@ -94,6 +72,7 @@ class ScanContents:
     views: tuple[ViewProgress, ...] = ()
     pictures: dict[str, Picture] | None = None
     object_name: str | None = None
+    box: CropBox | None = None
     is_of_cell: bool = False
     quality: ScanQuality | None = None
     pose_error_m: float | None = None
@@ -141,16 +120,6 @@ def load_scan(key: ScanKey) -> ScanContents:
     if record is None:
         return _planned(cell)
     return _with_results(session, _views(session.path / "scan", "scan", cell, record.parameters, seed))
-
-
-def load_scan_cell(cell: CellSettings) -> ScanCell:
-    """Put the cell together."""
-    low_m, high_m = np.array(cell.place.crop_min_m), np.array(cell.place.crop_max_m)
-    model = cell_model(cell, [low_m[:2], high_m[:2]], _MARGIN_M)
-    joints_rad = np.array([cell.robot.home_rad, *cell.scan.views_rad])
-    middles_m = link_poses(model.arm, joints_rad)[..., :3, 3].reshape(-1, 3)
-    reach_m = np.array([middles_m.min(axis=0) - _ARM_M, middles_m.max(axis=0) + _ARM_M])
-    return ScanCell(model, cell.robot.kind != "replay", reach_m, low_m, high_m)
 
 
 def load_images(picture: Picture) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.float32]]:
@@ -211,9 +180,9 @@ def _imported_mesh(session: Session) -> ScanContents:
 def _views(
     folder: Path, source: Source, cell: CellSettings | None, origin: dict[str, Any], seed: int
 ) -> ScanContents:
-    from hardware.scanning.store import read_views
+    from hardware.scanning.store import read_plan, read_views
 
-    records = read_views(folder)
+    records, plan = read_views(folder), read_plan(folder)
     frames = folder / FRAMES
     if records:
         views = [_view(record, frames, cell) for record in records]
@@ -226,6 +195,7 @@ def _views(
         tuple(views),
         {path.name.removesuffix(COLOR_ENDING): _picture(path) for path in frames.glob("*" + COLOR_ENDING)},
         object_name=str(named) if named is not None else None,
+        box=None if plan is None else plan.crop_box,
         is_of_cell=cell is not None and _is_of_cell(origin, cell, seed),
     )
 

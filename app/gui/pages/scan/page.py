@@ -9,9 +9,10 @@ from typing_extensions import override
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.background_page import BackgroundPage
+from app.gui.pages.cell_model import load_shown_cell
 from app.gui.pages.scan.dropping import DropTarget
 from app.gui.pages.scan.left import ScanLeft, ScanSplit
-from app.gui.pages.scan.loading import ScanContents, ScanKey, load_scan, load_scan_cell, object_names
+from app.gui.pages.scan.loading import ScanContents, ScanKey, load_scan, object_names
 from app.gui.pages.scan.side import ScanSide
 from app.gui.pages.scan.situation import Action, Situation, remarks_of, verdict_of
 from app.gui.pages.scan.views import ShownImages, ViewTable
@@ -106,6 +107,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             self.side.choice.choose(contents.object_name)
         view = self.left.view
         view.show_alone(contents.mesh if contents.source == "mesh" else None)
+        view.show_box(contents.box)
         if contents.source != "mesh" and (contents.mesh is not None or self._grown is None):
             view.show_mesh(contents.mesh)  # what grew while the views were taken stays until there is a model
         self._show_views()
@@ -118,7 +120,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
     def _show_cell(self) -> None:
         settings = self.desk.cell.settings
         self.side.choice.show_cell(settings)
-        self.load("cell", settings, load_scan_cell, self.left.view.show_cell)
+        self.load("cell", settings, load_shown_cell, self.left.view.show_cell)
 
     # What the arm does now
 

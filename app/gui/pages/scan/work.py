@@ -64,6 +64,7 @@ class ScanJobs(QObject):
         assert cell is not None, "the button is disabled before the cell is read"
         if not desk.jobs.is_idle:
             return
+        request = replace(request, cell_file=desk.cell.path)
         desk.scan_host.order(ScanWork.get_ready)
         self._start(
             self.tr("Scan"),

@@ -10,6 +10,7 @@ from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.drop import imagine_drop
 from core.workers import RunHere
+from tests.core.imagination.capacity.conftest import open_box
 from tests.core.imagination.here import here
 
 
@@ -74,3 +75,11 @@ def test_nothing_is_poured_where_no_candy_stayed(block, candies, few, tmp_path):
     assert capacity.level_of(10) == 0
     capacity.save(tmp_path)
     assert Capacity.load(tmp_path).recording is None
+
+
+def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few):
+    slit = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003, notch_m=(0.010, 0.035)))
+    whole = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003))
+    said = "Candies of 7 mm would fall through its openings."
+    assert said in fill(slit, candies, few, RunHere()).explanation
+    assert said not in fill(whole, candies, few, RunHere()).explanation

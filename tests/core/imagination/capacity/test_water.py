@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import trimesh
 
 from core.imagination.capacity.water import find_basin
 from core.mesh import TriangleMesh
@@ -100,3 +101,14 @@ def test_the_level_rises_with_the_volume_up_to_the_rim():
     assert (np.diff(levels) >= 0).all()
     assert basin.level_m(80) == pytest.approx(0.02, abs=0.001)
     assert basin.level_m(1000) == pytest.approx(0.04, abs=0.0015)
+
+
+def test_a_rough_wall_with_a_pinhole_costs_candies_nothing():
+    smooth = turned([(0, 0), (0.042, 0), (0.042, 0.082), (0.04, 0.082), (0.04, 0.002), (0, 0.002)])
+    fine = trimesh.Trimesh(smooth.vertices_m, smooth.faces).subdivide_to_size(0.003)
+    rough = fine.vertices + np.random.default_rng(0).normal(0, 0.0005, fine.vertices.shape)
+    in_wall = (np.abs(fine.triangles_center - [0.04, 0, 0.01]) < [0.004, 0.0015, 0.0015]).all(axis=1)
+    assert in_wall.any()
+    basin = basin_of(TriangleMesh(np.asarray(rough), np.asarray(fine.faces[~in_wall], dtype=np.int64)))
+    assert basin.water_ml < 60
+    assert basin.candies_ml == pytest.approx(np.pi * 40**2 * 80 / 1000, rel=0.05)

@@ -9,7 +9,8 @@ import pytest
 
 from core.errors import MotionError
 from core.motion.pour.plan import MOVES, MovePhase, PlannedMove, PourPlan, Segment
-from core.motion.pour.recovery import plan_back_off
+from core.motion.pour.recovery import check_rejoining, on_the_way_back, plan_back_off
+from core.motion.pour.scene import PourScene
 from core.motion.trajectory import SAMPLE_S, JointTrajectory
 
 CORNERS = np.cumsum(np.random.default_rng(3).uniform(-0.4, 0.4, (8, 6)), axis=0)
@@ -96,3 +97,31 @@ def test_a_back_off_that_is_stopped_itself_continues_from_there(plan):
     again = plan_back_off(plan, moves, 2, moves[2].trajectory.joints_rad[100])
     assert [move.name for move in again] == [move.name for move in moves[2:]]
     assert again[-1].trajectory.end_rad == pytest.approx(plan.start_rad)
+
+
+@pytest.mark.parametrize("is_down", [True, False])
+def test_joining_the_path_is_checked_for_what_is_in_between(mug, is_down):
+    plan, scene = mug.plan, PourScene(mug.cell, mug.target.object_aabb_m, mug.target.pouring.cup)
+    index = next(k for k, move in enumerate(plan.moves) if move.name is Segment.LOWER)
+    end_rad = plan.moves[index].trajectory.end_rad
+    aside_rad = np.array([0.0, 0.04, 0.0, 0.0, 0.0, 0.0])
+    higher_m = scene.held_cups(np.array([end_rad + aside_rad, end_rad - aside_rad]))[:, 2, 3]
+    is_plus = bool(higher_m[0] > higher_m[1]) != is_down
+    moves = plan_back_off(plan, plan.moves, index, end_rad + (aside_rad if is_plus else -aside_rad))
+    assert moves[0].name is Segment.REJOIN
+    if not is_down:
+        check_rejoining(mug.cell, mug.target, moves)
+        return
+    with pytest.raises(MotionError, match=r"the way to it is not clear: .* (cup|gripper)"):
+        check_rejoining(mug.cell, mug.target, moves)
+
+
+def test_an_arm_is_found_on_the_way_back_with_the_cup_or_nowhere(plan):
+    for index, move in enumerate(plan.moves):
+        if move.holds_cup:
+            found = on_the_way_back(plan, move.trajectory.joints_rad[60])
+            assert found is not None
+            assert plan.moves[found].phase is MovePhase.BACK
+            back = plan_back_off(plan, plan.moves, found, move.trajectory.joints_rad[60])
+            assert back[0].name == plan.moves[max(index, 13 - index)].name
+    assert on_the_way_back(plan, plan.moves[3].trajectory.joints_rad[60] + 1.0) is None

@@ -15,6 +15,7 @@ import pytest
 from core.motion.arm_models import UR5, UR5E
 from hardware.errors import (
     EmergencyStop,
+    MoveRefused,
     NotInRemoteControl,
     ProtectiveStop,
     RobotError,
@@ -27,7 +28,7 @@ from hardware.interfaces import ReadyStep
 from hardware.robots.ur.probe import DASHBOARD_PORT, DATA_PORT, SCRIPT_PORT
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import within
-from tests.hardware.robots.ur.bench import HOME, VERSIONS, Bench, bent_way, driver
+from tests.hardware.robots.ur.bench import HOME, STANDS_WITHIN_S, VERSIONS, Bench, bent_way, driver
 from tests.patience import wait_until
 
 EMPTY_ADDRESS = f"127.83.{os.getpid() % 256}.7"
@@ -80,7 +81,7 @@ def test_somebody_else_with_one_port(listeners: list[socket.socket]) -> None:
 
 def test_a_controller_that_froze(controller: ControllerProcess) -> None:
     controller.command("link silent 6")
-    refuses(controller.address, RobotUnreachable, "sends nothing, as no UR controller .* restart")
+    refuses(controller.address, RobotUnreachable, "sends nothing: a controller that hangs .* restart it")
 
 
 def test_another_model(controller: ControllerProcess) -> None:
@@ -201,6 +202,41 @@ def test_the_tools_voltage_is_set_when_nothing_is_held(controller: ControllerPro
     assert bench.truth()["tool_voltage_v"] == 12
     with driver(controller.address, tool_voltage_v=12):
         assert bench.truth()["tool_outputs"] == [True, False]
+
+
+def test_a_dashboard_that_answers_seconds_late_is_waited_for(bench: Bench) -> None:
+    bench.controller.command("dashboard delay 2.5")
+    try:
+        move = bench.begin("follow")
+        bench.robot.stop()
+        assert bench.seconds_to_rest() < STANDS_WITHIN_S, "a stop does not wait for it"
+        wait_until(lambda: move.is_done)
+        bench.robot.recover()
+    finally:
+        bench.controller.command("dashboard delay 0")
+    bench.works_again()
+
+
+def test_a_tool_connector_that_feeds_something_is_refused() -> None:
+    with ControllerProcess(version="5.11", joints_rad=HOME) as controller:
+        controller.command("dual pin power")
+        with pytest.raises(RobotNotReady, match=r"'dual pin power', .* Tool I/O"):
+            driver(controller.address, tool_voltage_v=24).look()
+        driver(controller.address).look()  # no gripper is at the connector
+        controller.command("single pin power")
+        driver(controller.address, tool_voltage_v=24).look()
+
+
+def test_the_safety_systems_joint_limits_are_asked_for(bench: Bench) -> None:
+    bench.controller.command(f"limit 2 {HOME[1] - 0.3} {HOME[1] + 0.3}")
+    try:
+        inside = HOME + np.linspace(-0.25, 0.25, 25)[:, None] * np.eye(6)[1]
+        bench.robot.refuse_unsafe(inside, "lift")
+        with pytest.raises(MoveRefused, match=r"In the move 'lift' .* safety limits"):
+            bench.robot.refuse_unsafe(inside + 0.1 * np.eye(6)[1], "lift")
+        assert bench.robot.stopped_by() is None
+    finally:
+        bench.controller.command("no limits")
 
 
 @pytest.mark.parametrize(

@@ -246,3 +246,59 @@ def test_the_command_line_explains_what_cannot_be() -> None:
         capture_output=True, cwd=ROOT, timeout=HANG_S, check=False,
     )  # fmt: skip
     assert done.returncode == 1 and done.stderr.decode().count("\n") == 1
+
+
+def test_faults_of_the_arm_and_its_safety_system(controller: ControllerProcess) -> None:
+    before = state(controller)["joints_rad"]
+    controller.command("jump 2 -0.03")
+    assert state(controller)["joints_rad"][1] == pytest.approx(before[1] - 0.03)
+    controller.command("jump 2 0.03")
+    controller.command("reduced")
+    assert state(controller)["safety_mode"] == "REDUCED"
+    controller.command("normal")
+    controller.command(f"limit 2 {before[1] + 0.1} 3")
+    wait_until(lambda: state(controller)["safety_mode"] == "PROTECTIVE_STOP")
+    controller.command("no limits")
+
+
+def test_a_frozen_controller_stands_still_and_is_silent_until_it_thaws() -> None:
+    with ControllerProcess() as controller:
+        controller.command("freeze")
+        first_s = state(controller)["time_s"]
+        with socket.create_connection((controller.address, DASHBOARD_PORT), 1) as client:
+            client.settimeout(0.3)
+            with pytest.raises(TimeoutError):
+                client.recv(100)
+            assert state(controller)["time_s"] == first_s
+            controller.command("thaw")
+            client.settimeout(HANG_S)
+            assert client.recv(100).startswith(b"Connected")
+        wait_until(lambda: state(controller)["time_s"] > first_s)
+
+
+def test_single_connections_are_dropped_and_the_dashboard_may_be_late() -> None:
+    with ControllerProcess() as controller:
+        ports = (DASHBOARD_PORT, RTDE_PORT, RTDE_PORT)
+        clients = [socket.create_connection((controller.address, port), 1) for port in ports]
+        wait_until(lambda: len(state(controller)["connections"]) == 3)
+        controller.command("drop rtde 2")
+        wait_until(lambda: state(controller)["connections"] == ["dashboard", "rtde"])
+        controller.command("drop dashboard")
+        wait_until(lambda: state(controller)["connections"] == ["rtde"])
+        for client in clients:
+            client.close()
+        controller.command("dashboard delay 0.3")
+        with socket.create_connection((controller.address, DASHBOARD_PORT), 1) as late:
+            assert late.recv(100)
+            began_s = time.monotonic()
+            late.sendall(b"robotmode\n")
+            assert late.recv(100) == b"Robotmode: RUNNING\n"
+            assert time.monotonic() - began_s >= 0.3
+
+
+def test_its_pace_can_be_changed() -> None:
+    with ControllerProcess() as controller, AwakeClock() as clock:
+        controller.command("pace 5")
+        began_s, first_s = clock.now_s(), state(controller)["time_s"]
+        time.sleep(0.5)
+        assert state(controller)["time_s"] - first_s > 2 * (clock.now_s() - began_s)

@@ -19,7 +19,7 @@ from app.gui.pages.pours.pour_scene import map_rotation_deg
 from app.gui.pages.pours.results import PoursKey, load_pours
 from app.operations.choosing import current_motions
 from core.errors import SessionError
-from core.imagination.results import PourRisk, joined
+from core.imagination.risk.result import PourRisk, joined
 from core.session import Session
 from core.session.operator_choice import CHOICE_FILE
 from hardware.cell import SIMULATED_CELL, read_cell

@@ -201,3 +201,20 @@ def test_a_damaged_session_is_reported(qtbot, desk, make_page, mug_session):
     page.show()
     qtbot.waitUntil(lambda: bool(told))
     assert "quality.json" in told[0]
+
+
+def test_the_box_drawn_is_the_one_that_the_plan_laid_around_the_object(qtbot, desk, make_page, mug_session):
+    path = mug_session / "scan" / "views.json"
+    table = json.loads(path.read_text())
+    low, high = [-0.2, -0.5, 0.03], [0.1, -0.2, 0.45]
+    views = [view["joints_rad"] for view in table["views"]]
+    box = {"min_m": low, "max_m": high}
+    path.write_text(json.dumps(table | {"plan": {"views_rad": views, "crop_box": box, "keep_out": box}}))
+    page = opened(make_page, desk, mug_session)
+    drawn = page.left.view.scene._boxes["box"]
+    assert [list(drawn.min_m), list(drawn.max_m)] == [low, high]
+    desk.open_session(mug_session.with_name("another"))
+    settle(qtbot, desk, page)
+    place = read_cell().place
+    drawn = page.left.view.scene._boxes["box"]
+    assert [list(drawn.min_m), list(drawn.max_m)] == [list(place.crop_min_m), list(place.crop_max_m)]

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from core.imagination.choice import choose_pour, papers_order
-from core.imagination.results import NOT_TRIED, PourGrid, PourRisk, joined
-from core.imagination.risk import ROUND, Race
+from core.imagination.results import PourGrid
+from core.imagination.risk.race import ROUND, Race
+from core.imagination.risk.result import NOT_TRIED, PourRisk, joined
 from core.parameters import Parameters
 from core.parameters.risk import RiskParameters
 

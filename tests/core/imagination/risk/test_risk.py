@@ -3,7 +3,8 @@ import pytest
 
 from core.geometry import make_pose, rotation_z
 from core.imagination.packing import cup_holds
-from core.imagination.risk import draw_set_up, with_scan_error
+from core.imagination.risk.drawing import draw_cups, draw_set_up, with_scan_error
+from core.imagination.risk.result import PourRisk
 from core.imagination.set_up import as_planned
 from core.parameters import Parameters, apply_settings
 from core.pipeline.in_memory import imagine
@@ -85,3 +86,78 @@ def test_without_tries_the_papers_rule_chooses(dish, quick, pool):
     plain = imagine(dish, apply_settings(quick, {"risk.n_tries": 0}), pool, Reporter())
     assert plain.risk is None
     assert (plain.choice.i, plain.choice.j) == (plain.paper_choice.i, plain.paper_choice.j)
+
+
+def test_several_cups_are_filled_from_one_bag_and_poured_into_one_object():
+    parameters = apply_settings(Parameters(), {"risk.object_error_m": 0.005, "risk.candy_spread": 0.1})
+    first, second, third = draw_cups(parameters, 3, 3, CENTER_M)
+    alone = draw_set_up(parameters, 3, CENTER_M)
+    assert first.packing == alone.packing and np.array_equal(first.T_E_slipped, alone.T_E_slipped)
+    assert first.candy_scale == second.candy_scale == third.candy_scale != 1
+    assert np.array_equal(first.T_base_moved, third.T_base_moved)
+    assert len({one.packing for one in (first, second, third)}) == 3
+    assert not np.array_equal(first.T_E_slipped, second.T_E_slipped), "it is grasped anew"
+
+
+@pytest.fixture(scope="module")
+def two_cups(dish, quick, pool):
+    """150 candies for a dish that holds 119, in two cups of which the first fits."""
+    errors = dict.fromkeys(("object_error_m", "object_error_rad", "cup_error_m", "cup_error_rad"), 0.0)
+    settings = {f"risk.{name}": value for name, value in errors.items()} | {
+        "risk.n_tries": 4,
+        "risk.candy_spread": 0.0,
+        "containability.verdict": "capacity",
+        "pouring.amount": "number",
+        "pouring.n_packings": 1,
+        "particle.diameter_m": 0.0119,
+        "particle.height_m": 0.0063,
+        "particle.mass_kg": 0.0006,
+        "pouring.n_pour": 150,
+    }
+    return imagine(dish, apply_settings(quick, settings), pool, Reporter())
+
+
+def test_a_later_cup_runs_over_where_the_first_fits(two_cups):
+    risk, n_cups = two_cups.risk, two_cups.grid.n_cups
+    assert n_cups > 1 and risk.n_cups == n_cups
+    tried = risk.n_tries >= 4
+    assert tried.any() and (two_cups.grid.n_spilled[tried] == 0).all(), "there the first cup fits"
+    assert (risk.n_clean[tried] == 0).all()
+    assert risk.n_tries[two_cups.choice.i, two_cups.choice.j] > 0, "what nobody tried is not chosen"
+
+
+def test_a_clean_first_cup_is_no_try_of_the_whole_amount(two_cups):
+    planned = PourRisk.as_planned(two_cups.grid)
+    assert (planned.n_tries == (two_cups.grid.n_spilled[..., 0] > 0)).all()
+    assert np.isfinite(planned.mean_spilled).all()
+
+
+@pytest.fixture(scope="module")
+def doubtful(dish, quick, pool):
+    """100 candies for a dish that holds 119: heaped at the stream, some go over its wall."""
+    settings = {
+        "risk.n_tries": 8,
+        "risk.wanted_clean": 0.7,
+        "containability.verdict": "capacity",
+        "pouring.amount": "number",
+        "pouring.n_packings": 1,
+        "particle.diameter_m": 0.0119,
+        "particle.height_m": 0.0063,
+        "particle.mass_kg": 0.0006,
+        "pouring.n_pour": 100,
+    }
+    return imagine(dish, apply_settings(quick, settings), pool, Reporter())
+
+
+def test_where_no_pour_is_sure_enough_fewer_candies_are_tried(doubtful, tmp_path):
+    risk = doubtful.risk
+    assert risk.clean_at_least.max() < 0.7
+    assert risk.fewer is not None and risk.fewer.n_candies < 100
+    assert risk.fewer.clean_at_least >= 0.7
+    assert risk.fewer.n_clean <= risk.fewer.n_tries <= 12
+    risk.save(tmp_path)
+    assert PourRisk.load(tmp_path).fewer == risk.fewer
+
+
+def test_where_a_pour_is_sure_enough_no_other_amount_is_tried(dish_tried):
+    assert dish_tried.risk.clean_at_least.max() < 0.6 or dish_tried.risk.fewer is None

@@ -1,0 +1,1 @@
+"""The Cell page: from a bare table to a calibrated cell, step by step."""

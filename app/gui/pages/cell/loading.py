@@ -1,0 +1,140 @@
+"""What the Cell page shows of a cell and its records, read in the background. Knows no Qt."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from app.gui.pages.cell_model import ShownCell, load_shown_cell
+from app.gui.views.scene import Frustum
+from app.operations.calibration.cell_file import known_cells
+from app.operations.calibration.provenance import (
+    CHECK,
+    HAND_EYE,
+    REFERENCE,
+    RESULT,
+    TABLE,
+    VIEWS,
+    VIEWS_STEP,
+    BoardEntry,
+    read_boards,
+    read_looks,
+    runs,
+)
+from app.operations.calibration.steps import Step, steps
+from core.motion.kinematics import flange_pose
+from core.scan.view_files import read_color
+from hardware.cell.settings import ARMS
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+    from core.calibration.collecting import Look
+    from core.geometry import FloatArray
+    from hardware.cell import CellSettings
+
+_WITH_LOOKS = (HAND_EYE, CHECK, TABLE, REFERENCE)
+
+
+@dataclass(frozen=True, eq=False)
+class CellKey:
+    """What is to be read, at every refresh: records are added without another cell.
+
+    Attributes:
+        path: of the cell's file; none for the one that the program ships.
+        settings: what it says.
+    """
+
+    path: Path | None
+    settings: CellSettings
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """What a step looked at.
+
+    Attributes:
+        frusta: from where.
+        T_base_board: (4, 4) where the board was seen last; none if it was not.
+        color: (H, W, 3) the last image; none if there is none.
+    """
+
+    frusta: tuple[Frustum, ...] = ()
+    T_base_board: FloatArray | None = None
+    color: npt.NDArray[np.uint8] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class CellContents:
+    """What is there.
+
+    Attributes:
+        path: of the cell's file; none for the one that the program ships.
+        shown: arm and furniture.
+        known: all cells' files.
+        steps: of this cell, in their order; none for the cell that the program ships.
+        evidence: of those steps that have some, by name.
+        board: that was entered last; none if none was.
+        is_interrupted: whether a calibration was begun and not finished.
+    """
+
+    path: Path | None
+    shown: ShownCell
+    known: tuple[Path, ...]
+    steps: tuple[Step, ...] = ()
+    evidence: dict[str, Evidence] = field(default_factory=dict)
+    board: BoardEntry | None = None
+    is_interrupted: bool = False
+
+
+def load_cell(key: CellKey) -> CellContents:
+    """Read everything.
+
+    Raises:
+        PoursightError: the file or a record is damaged.
+    """
+    shown, known = load_shown_cell(key.settings), known_cells()
+    if key.path is None:
+        return CellContents(None, shown, known)
+    evidence = {step: _evidence(key.path, step, key.settings) for step in _WITH_LOOKS}
+    evidence[VIEWS_STEP] = Evidence(_scan_views(key.settings))
+    boards, begun = read_boards(key.path), runs(key.path, HAND_EYE)
+    is_interrupted = bool(begun) and (begun[-1] / VIEWS).is_file() and not (begun[-1] / RESULT).exists()
+    board = boards[-1] if boards else None
+    return CellContents(key.path, shown, known, steps(key.path), evidence, board, is_interrupted)
+
+
+def _evidence(path: Path, step: str, settings: CellSettings) -> Evidence:
+    folders = [folder for folder in runs(path, step) if (folder / VIEWS).is_file()]
+    if not folders:
+        return Evidence()
+    _, looks = read_looks(folders[-1])
+    T_flange_camera = settings.camera.pose
+    frusta = tuple(
+        Frustum(f"view {k}", _flange(look, settings) @ T_flange_camera, _state(look))
+        for k, look in enumerate(looks, 1)
+    )
+    seen = [look.view for look in looks if look.view is not None]
+    board = seen[-1].T_base_flange @ T_flange_camera @ seen[-1].T_camera_board if seen else None
+    pictures = sorted(folders[-1].glob("view-*.png"))
+    return Evidence(frusta, board, read_color(pictures[-1]) if pictures else None)
+
+
+def _flange(look: Look, settings: CellSettings) -> FloatArray:
+    if look.view is not None:
+        return look.view.T_base_flange
+    return flange_pose(ARMS[settings.robot.model], look.joints_rad)
+
+
+def _state(look: Look) -> Literal["taken", "poor", "failed"]:
+    if look.view is None:
+        return "failed"
+    return "taken" if look.is_used else "poor"
+
+
+def _scan_views(settings: CellSettings) -> tuple[Frustum, ...]:
+    poses = flange_pose(ARMS[settings.robot.model], np.array(settings.scan.views_rad)) @ settings.camera.pose
+    return tuple(Frustum(f"view {k}", pose) for k, pose in enumerate(poses, 1))

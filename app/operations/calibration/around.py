@@ -1,0 +1,100 @@
+"""Seeing where the board lies, with a calibrated camera that looks at it from all sides."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.operations.calibration.capture import Capture, find_board
+from app.operations.calibration.hand_eye import is_same
+from app.operations.calibration.provenance import HAND_EYE, RESULT, latest_result, read_looks
+from core.calibration.board import BoardSpec
+from core.calibration.checking import FEWEST_VIEWS
+from core.calibration.hand_eye import HandEyeFit
+from core.calibration.noise import Noise, pose_errors
+from core.calibration.proposing import ProposalTask, in_short_order, propose_poses
+from core.calibration.rig import Rig, all_derivatives
+from core.calibration.views import BoardView
+from core.errors import InputError, StageError
+from core.files import reading
+from core.geometry import FloatArray
+from core.scan.model import Intrinsics
+from hardware.cameras.simulated_board import SimulatedBoardCamera
+from hardware.cell import Cell
+from hardware.cell.settings import CellSettings
+
+N_VIEWS = 6
+MARGIN_PX = 25.0
+
+
+def calibrated_run(cell_file: Path, settings: CellSettings) -> tuple[Path, dict[str, Any]]:
+    """Return the folder and the result of the calibration that is in the cell's file.
+
+    Raises:
+        InputError: the hand-eye pose there is another one.
+    """
+    latest = latest_result(cell_file, HAND_EYE)
+    if latest is None or not is_same(latest[1]["after"], settings.camera.pose):
+        raise InputError(
+            f"The hand-eye pose in {cell_file} is not one that was calibrated here; calibrate first."
+        )
+    return latest
+
+
+def calibrated_fit(
+    folder: Path, table: dict[str, Any], board: BoardSpec, intrinsics: Intrinsics
+) -> HandEyeFit:
+    """Return the fit of a calibration as its record has it.
+
+    Raises:
+        SessionError: the record is damaged.
+    """
+    _, looks = read_looks(folder)
+    views = [look.view for look in looks if look.view is not None and look.is_used]
+    with reading(folder / RESULT):
+        rig = Rig(table["after"], table["T_base_board"], intrinsics)
+        return HandEyeFit(
+            rig=rig,
+            covariance=np.array(table["covariance"]),
+            degrees_of_freedom=float(table["degrees_of_freedom"]),
+            noise=Noise(**table["noise"]),
+            poses=pose_errors(all_derivatives(rig, board, views)),
+            weights=np.array(table["weights"]),
+            rms_px=float(table["rms_px"]),
+        )
+
+
+def look_around(capture: Capture) -> tuple[BoardView, ...]:
+    """Look at the board, wherever it lies, from all sides.
+
+    Raises:
+        StageError: it is not in sight, or too few views could be used.
+    """
+    find_board(capture)
+    cell, collection = capture.cell, capture.collection
+    first = next(look.view for look in collection.looks if look.view is not None)
+    T_flange_camera = cell.settings.camera.pose
+    T_base_board = first.T_base_flange @ T_flange_camera @ first.T_camera_board
+    rig = Rig(T_flange_camera, T_base_board, collection.intrinsics)
+    task = ProposalTask(
+        rig, collection.board, collection.image_size_px, collection.home_rad, MARGIN_PX,
+        cell.settings.camera.min_range_m,
+    )  # fmt: skip
+    here = np.array(cell.robot.state().joints_rad)
+    capture.go_and_look(in_short_order(propose_poses(cell.scene, task, N_VIEWS), here))
+    views = collection.views
+    if len(views) < FEWEST_VIEWS:
+        raise StageError(
+            f"Only {len(views)} views of the board could be used; see that the arm can go around it, and "
+            "look again."
+        )
+    return views
+
+
+def lay_simulated_board(cell: Cell, middle_m: FloatArray, yaw_rad: float) -> None:
+    """Lay the board of a simulated cell elsewhere, its middle at a point (3,)."""
+    camera = cell.camera
+    assert isinstance(camera, SimulatedBoardCamera), "a simulated cell that looks at its board"
+    camera.T_base_board = camera.lying(middle_m, yaw_rad)

@@ -1,0 +1,1 @@
+"""How surely each pour spills nothing: drawing errors, spending tries, and what they say."""

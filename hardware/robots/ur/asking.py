@@ -1,0 +1,55 @@
+"""What the driver asks of an arm at rest, several requests to the worker each."""
+
+from __future__ import annotations
+
+import time
+
+from core.geometry import FloatArray
+from hardware.errors import MoveRefused
+from hardware.robots.ur.link import WorkerLink
+from hardware.robots.ur.messages import tool_outputs
+
+_OUTPUT_WITHIN_S = 0.5
+_POLL_S = 0.004
+_ASKED_AT_ONCE = 10
+"""Each takes some of the controller's cycles."""
+
+
+def switch_tool_output(worker: WorkerLink, name: str, output: int, value: bool) -> None:
+    """Set a digital output of the tool (0 or 1) and see that it is set.
+
+    Measured with ur_rtde 1.6.5: the first write after a lost link is lost without an error. So the output is
+    read back, and written once more if need be.
+
+    Raises:
+        MoveRefused: it does not change.
+        RobotError: the robot, which people call `name`, cannot be reached.
+    """
+    for _ in range(2):
+        worker.ask("set_tool_output", output, value)
+        deadline_s = time.monotonic() + _OUTPUT_WITHIN_S
+        while time.monotonic() < deadline_s:
+            if tool_outputs(worker.state())[output] == value:
+                return
+            time.sleep(_POLL_S)
+    raise MoveRefused(
+        f"Tool output {output} of the {name} did not change; see under I/O on its panel whether something "
+        "else sets it."
+    )
+
+
+def refuse_beyond_safety(worker: WorkerLink, name: str, joints_rad: FloatArray, label: str) -> None:
+    """Refuse a motion through configurations (N, 6) that the controller's safety system does not allow.
+
+    Raises:
+        MoveRefused: it does not allow one; `label` names the motion.
+        RobotError: the robot, which people call `name`, does not answer.
+    """
+    for k in range(0, len(joints_rad), _ASKED_AT_ONCE):
+        try:
+            worker.ask("are_safe", joints_rad[k : k + _ASKED_AT_ONCE])
+        except MoveRefused as refused:
+            raise MoveRefused(
+                f"In the move '{label}' the arm would come where the safety limits of the {name} do not "
+                "allow it; see the joint limits under Installation, Safety, on its panel."
+            ) from refused

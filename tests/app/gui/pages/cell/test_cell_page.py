@@ -1,0 +1,235 @@
+"""The Cell page: a cell is made, set up step by step, undone, and its steps say how far it is."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QSpinBox
+
+from app.gui.pages.cell.page import CellPage
+from app.gui.pages.cell.step_list import StepRow
+from app.jobs.scan_events import ScanQuestion
+from app.operations.calibration.cell_file import new_cell
+from app.operations.calibration.provenance import HAND_EYE, read_looks, runs
+from app.operations.calibration.steps import enter_board
+from core.calibration.board import BoardSpec
+from hardware.cell import read_cell
+
+STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference"]
+N_VIEWS = 8
+
+
+@pytest.fixture
+def cells(tmp_path, monkeypatch):
+    monkeypatch.setenv("POURSIGHT_CELLS", str(tmp_path / "cells"))
+    return tmp_path / "cells"
+
+
+@pytest.fixture
+def page(qtbot, desk, cells):
+    page = CellPage(desk)
+    qtbot.addWidget(page)
+    page.resize(1040, 640)
+    page.show()
+    desk.cell.choose(None)
+    settle(qtbot, desk, page)
+    return page
+
+
+def settle(qtbot, desk, page):
+    """Wait until nothing is under way and the page shows the chosen cell."""
+    qtbot.waitUntil(lambda: desk.jobs.is_idle and desk.background.is_idle)
+    qtbot.waitUntil(lambda: page.content is not None and page.content.path == desk.cell.path)
+
+
+def choose(qtbot, desk, page, path):
+    desk.cell.choose(path)
+    settle(qtbot, desk, page)
+
+
+def button(page, name="primary"):
+    return page.findChild(QPushButton, name)
+
+
+def press(qtbot, page, name="primary"):
+    assert button(page, name).isEnabled() and button(page, name).isVisible(), name
+    qtbot.mouseClick(button(page, name), Qt.MouseButton.LeftButton)
+
+
+def pick(qtbot, page, step):
+    qtbot.mouseClick(page.findChild(StepRow, f"step_{step}"), Qt.MouseButton.LeftButton)
+
+
+def text(page, name):
+    return page.findChild(QLabel, name).text()
+
+
+def states(page):
+    return {line.key: line.state for line in page.side.steps.lines}
+
+
+def measured_cell(seed=0):
+    path = new_cell("bench", is_simulated=True, seed=seed)
+    enter_board(path, BoardSpec(), "a4", 0.030)
+    return path
+
+
+def test_of_the_shipped_cell_nothing_is_changed_but_a_new_one_is_offered(qtbot, desk, page, cells):
+    assert button(page).text() == "Create the cell"
+    assert not page.side.steps.isVisible()
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: desk.cell.path == cells / "my-cell.toml")
+    settle(qtbot, desk, page)
+    assert list(states(page)) == STEPS and set(states(page).values()) == {"empty"}
+    assert button(page).text() == "Find the arm"
+    assert text(page, "headline").startswith("Next: Arm.")
+    assert not button(page, "undo").isVisible()
+
+
+def test_a_real_cell_needs_an_address(qtbot, desk, page, cells):
+    kind = page.findChild(QComboBox, "cell_kind")
+    kind.setCurrentIndex(1)
+    assert not button(page).isEnabled()
+    page.side.form._address.setText("192.168.0.7")
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: desk.cell.path is not None)
+    settle(qtbot, desk, page)
+    assert read_cell(desk.cell.path).robot.address == "192.168.0.7"
+    pick(qtbot, page, "board")
+    assert "glue it flat" in text(page, "step_what")
+
+
+def test_a_name_that_is_taken_is_said_and_the_form_stays(qtbot, desk, page):
+    new_cell("my cell", is_simulated=True)
+    said = []
+    desk.background.failed.connect(said.append)
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: bool(said))
+    assert "already" in said[0]
+    assert page.is_new and button(page).isEnabled()
+
+
+def test_a_step_waits_for_the_one_before_it(qtbot, desk, page):
+    choose(qtbot, desk, page, new_cell("bench", is_simulated=True))
+    pick(qtbot, page, "hand-eye")
+    assert text(page, "obstacle") == "First comes the step “Calibration board”."
+    assert not button(page).isEnabled()
+    pick(qtbot, page, "views")
+    assert not page.findChild(QLabel, "obstacle").isVisible()
+    assert button(page).isEnabled()
+
+
+def test_the_board_is_printed_measured_and_undone(qtbot, desk, page, monkeypatch):
+    opened = []
+    monkeypatch.setattr("app.gui.pages.cell.page._open", opened.append)
+    path = new_cell("bench", is_simulated=True)
+    choose(qtbot, desk, page, path)
+    pick(qtbot, page, "board")
+    press(qtbot, page, "print_board")
+    qtbot.waitUntil(lambda: bool(opened))
+    assert opened[0].read_bytes().startswith(b"%PDF")
+    settle(qtbot, desk, page)
+    assert states(page)["board"] == "empty"
+    page.side.options._side.setValue(29.85)
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: states(page)["board"] == "fresh")
+    assert "29.85 mm" in page.side.steps.lines[2].figure
+    pick(qtbot, page, "board")
+    press(qtbot, page, "undo")
+    qtbot.waitUntil(lambda: states(page)["board"] == "empty")
+
+
+def test_a_board_that_cannot_be_is_refused_with_its_reason(qtbot, desk, page):
+    choose(qtbot, desk, page, new_cell("bench", is_simulated=True))
+    pick(qtbot, page, "board")
+    page.findChild(QSpinBox, "board_columns").setValue(20)
+    page.findChild(QSpinBox, "board_rows").setValue(20)
+    said = []
+    desk.message.connect(said.append)
+    press(qtbot, page)
+    assert len(said) == 1 and "4X4_50" in said[0]
+
+
+def test_steps_of_another_cell_are_never_shown_as_those_of_the_chosen_one(qtbot, desk, page):
+    choose(qtbot, desk, page, measured_cell())
+    assert states(page)["board"] == "fresh"
+    desk.cell.choose(new_cell("other", is_simulated=True))
+    qtbot.waitUntil(lambda: desk.cell.path.stem == "other")
+    assert page.step == "" or page.content.path == desk.cell.path
+    settle(qtbot, desk, page)
+    assert states(page)["board"] == "empty"
+
+
+def test_a_damaged_record_is_said_instead_of_the_steps(qtbot, desk, page, cells):
+    path = measured_cell()
+    (cells / "bench.calibration" / "board.json").write_text("{")
+    desk.cell.choose(path)
+    qtbot.waitUntil(lambda: desk.cell.path == path and desk.background.is_idle and bool(page.failure))
+    assert text(page, "headline") == "The cell cannot be shown."
+    assert "board.json" in text(page, "details")
+    assert not button(page).isEnabled()
+
+
+@pytest.mark.system
+def test_a_cell_is_calibrated_killed_continued_checked_and_undone(qtbot, desk, page):
+    path = measured_cell(seed=7)
+    before = read_cell(path).camera.pose
+    choose(qtbot, desk, page, path)
+    pick(qtbot, page, "hand-eye")
+    page.findChild(QSpinBox, "n_looks").setValue(N_VIEWS)
+    news, failed = [], []
+    desk.jobs.event_received.connect(news.append)
+    desk.jobs.failed.connect(lambda job, what: failed.append((job, what)))
+    press(qtbot, page)
+    assert states(page)["hand-eye"] == "running"
+    qtbot.waitUntil(lambda: sum(not look.problem for look in page._looks) >= 3)
+    assert text(page, "headline").startswith("Looking at the board: ")
+    assert not page.view.now._image._image.isNull()
+    assert {"board", "board ink"} <= set(page.view.scene.layers())
+    os.kill(desk.scan_host.pid, signal.SIGKILL)
+    qtbot.waitUntil(lambda: bool(failed))
+    settle(qtbot, desk, page)
+    n_kept = len(read_looks(runs(path, HAND_EYE)[-1])[1])
+    assert n_kept >= 3
+    pick(qtbot, page, "hand-eye")
+    assert button(page).text() == "Continue calibration"
+    assert button(page, "start_over").isVisible()
+
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)
+    settle(qtbot, desk, page)
+    assert states(page)["hand-eye"] == "fresh", failed[1:]
+    assert len(runs(path, HAND_EYE)) == 2
+    assert abs(desk.cell.settings.camera.pose - before).max() > 1e-3
+
+    pick(qtbot, page, "check")
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)
+    settle(qtbot, desk, page)
+    assert states(page)["check"] == "fresh"
+    assert not any(isinstance(one, ScanQuestion) for one in news), "nobody is asked in simulation"
+    pick(qtbot, page, "hand-eye")
+    press(qtbot, page, "undo")
+    qtbot.waitUntil(lambda: states(page)["hand-eye"] == "empty")
+    assert abs(desk.cell.settings.camera.pose - before).max() < 1e-8
+    assert states(page)["check"] == "stale"
+
+
+@pytest.mark.system
+def test_stop_ends_a_calibration_and_what_was_taken_is_kept(qtbot, desk, page):
+    path = measured_cell(seed=8)
+    choose(qtbot, desk, page, path)
+    before = path.read_bytes()
+    pick(qtbot, page, "hand-eye")
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: len(page._looks) >= 2)
+    desk.arm.stop()
+    desk.jobs.cancel()
+    settle(qtbot, desk, page)
+    assert path.read_bytes() == before
+    assert len(read_looks(runs(path, HAND_EYE)[-1])[1]) >= 2
+    pick(qtbot, page, "hand-eye")
+    assert button(page).text() == "Continue calibration"
