@@ -68,22 +68,47 @@ def check_rejoining(cell: PourCell, target: PourTarget, moves: Sequence[PlannedM
     """Check the bit by which a way back joins the checked path: beside it nothing was checked.
 
     A plan keeps its clearances and no more, so that an arm beside its path has less: half of them is enough.
+    An arm that was pushed nearer than that may leave, as long as it comes no nearer on its way.
 
     Raises:
         MotionError: it is not clear; the sentence says what a person has to do.
     """
-    half = {name: getattr(cell.limits, name) / 2 for name in ("min_clearance_m", "cup_clearance_m")}
-    closer = replace(cell, limits=cell.limits.model_copy(update=half))
-    scene = PourScene(closer, target.object_aabb_m, target.pouring.cup)
     for move, following in pairwise(moves):
         if move.name is not Segment.REJOIN:
             continue
+        joining = replace(move, name=following.name)
         try:
-            check_clearance(scene, [replace(move, name=following.name)])
+            here = check_clearance(_scene_with(cell, target, 0.0, 0.0), [_standing(joining)])
+            check_clearance(
+                _scene_with(
+                    cell,
+                    target,
+                    min(cell.limits.min_clearance_m / 2, here.clearance_m),
+                    min(cell.limits.cup_clearance_m / 2, here.cup_clearance_m),
+                ),
+                [joining],
+            )
         except MotionError as error:
             raise MotionError(
                 f"The arm is beside its planned path, and the way to it is not clear: {error}"
             ) from error
+
+
+def _scene_with(
+    cell: PourCell, target: PourTarget, min_clearance_m: float, cup_clearance_m: float
+) -> PourScene:
+    limits = cell.limits.model_copy(
+        update={"min_clearance_m": min_clearance_m, "cup_clearance_m": cup_clearance_m}
+    )
+    return PourScene(replace(cell, limits=limits), target.object_aabb_m, target.pouring.cup)
+
+
+def _standing(move: PlannedMove) -> PlannedMove:
+    """Where a move begins, and no further."""
+    start_rad = move.trajectory.start_rad
+    return replace(
+        move, trajectory=JointTrajectory(np.array([0.0, SAMPLE_S]), np.stack([start_rad, start_rad]))
+    )
 
 
 def on_the_way_back(plan: PourPlan, joints_rad: FloatArray) -> int | None:

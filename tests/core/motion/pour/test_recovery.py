@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -125,3 +126,29 @@ def test_an_arm_is_found_on_the_way_back_with_the_cup_or_nowhere(plan):
             back = plan_back_off(plan, plan.moves, found, move.trajectory.joints_rad[60])
             assert back[0].name == plan.moves[max(index, 13 - index)].name
     assert on_the_way_back(plan, plan.moves[3].trajectory.joints_rad[60] + 1.0) is None
+
+
+def test_an_arm_that_was_pushed_close_to_the_object_may_leave_but_come_no_closer(mug):
+    plan, scene = mug.plan, PourScene(mug.cell, mug.target.object_aabb_m, mug.target.pouring.cup)
+    index = next(k for k, move in enumerate(plan.moves) if move.name is Segment.POUR)
+    on_path_rad = plan.moves[index].trajectory.joints_rad[40]
+    pushed_rad = on_path_rad + np.linspace(0, 0.1, 400)[:, None] * _towards_object(scene, on_path_rad)
+    gap_m = scene.cup_clearance(scene.held_cups(pushed_rad), pushed_rad).distance_m
+    close = int(np.flatnonzero((gap_m > 0) & (gap_m < mug.cell.limits.cup_clearance_m / 2))[0])
+    leaving = plan_back_off(plan, plan.moves, index, pushed_rad[close])
+    assert leaving[0].name is Segment.REJOIN
+    check_rejoining(mug.cell, mug.target, leaving)
+    joining = leaving[0].trajectory
+    turned = replace(
+        leaving[0], trajectory=replace(joining, joints_rad=2 * pushed_rad[close] - joining.joints_rad)
+    )
+    with pytest.raises(MotionError, match=r"the way to it is not clear: .* cup and object would"):
+        check_rejoining(mug.cell, mug.target, (turned, *leaving[1:]))
+
+
+def _towards_object(scene, joints_rad):
+    """The shoulder's direction (6,) of turning that brings the held cup closer to anything."""
+    shoulder = np.array([0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    both = joints_rad + 0.01 * np.stack([shoulder, -shoulder])
+    gap_m = scene.cup_clearance(scene.held_cups(both), both).distance_m
+    return shoulder if gap_m[0] < gap_m[1] else -shoulder
