@@ -49,7 +49,7 @@ def board(
     from app.cli import cell_commands
 
     if undo:
-        cell_commands.undo_board(name)
+        cell_commands.undo(name, "board")
     else:
         cell_commands.board(name, paper, (columns, rows), square_mm, dictionary, measured_mm)
 
@@ -68,7 +68,7 @@ def calibrate(
     from app.cli import cell_commands
 
     if undo:
-        cell_commands.undo_calibration(name)
+        cell_commands.undo(name, "hand-eye")
     else:
         cell_commands.calibrate(name, views, restart, yes)
 
@@ -83,7 +83,7 @@ def check(
     from app.cli import cell_commands
 
     if undo:
-        cell_commands.undo_check(name)
+        cell_commands.undo(name, "check")
     else:
         raise typer.Exit(0 if cell_commands.check(name, yes) else 1)
 
@@ -109,7 +109,7 @@ def table(
     from app.cli import cell_commands
 
     if undo:
-        cell_commands.undo_table(name)
+        cell_commands.undo(name, "table")
     else:
         cell_commands.table(name, thickness_mm, yes)
 
@@ -124,7 +124,7 @@ def views(
     from app.cli import cell_commands
 
     if undo:
-        cell_commands.undo_views(name)
+        cell_commands.undo(name, "views")
     else:
         cell_commands.views(name, n)
 
@@ -139,7 +139,7 @@ def reference(
     from app.cli import cell_commands
 
     if undo:
-        cell_commands.undo_reference(name)
+        cell_commands.undo(name, "reference")
     else:
         cell_commands.reference(name, yes)
 

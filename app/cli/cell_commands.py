@@ -11,20 +11,37 @@ import numpy as np
 from app.cli.operators import PrintingOperator, TerminalOperator
 from app.cli.options import given_path
 from app.cli.terminal import TerminalReporter
-from app.operations.calibration import cell_file, hand_eye, steps
+from app.operations.calibration import cell_file, hand_eye, steps, undoing
 from app.operations.calibration import check as checking
 from app.operations.calibration import devices as devices_of_cell
 from app.operations.calibration import reference as referring
 from app.operations.calibration import table as measuring
 from app.operations.calibration import views as choosing_views
 from app.operations.calibration.capture import CaptureObserver
-from app.operations.calibration.provenance import ARM, CAMERA, CHECK, REFERENCE, TABLE
+from app.operations.calibration.provenance import (
+    ARM,
+    BOARD,
+    CAMERA,
+    CHECK,
+    HAND_EYE,
+    REFERENCE,
+    TABLE,
+    VIEWS_STEP,
+)
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.errors import Cancelled, InputError
 from hardware.cell import read_cell
 
 MM = 1000.0
+_UNDONE = {
+    BOARD: "The board that was entered last is forgotten; see: poursight cell show {file}",
+    HAND_EYE: "The hand-eye pose in {file} is as it was before the calibration.",
+    CHECK: "The last check counts no more.",
+    TABLE: "Platform, crop box and table in {file} are where they were before.",
+    VIEWS_STEP: "The views in {file} are those from before.",
+    REFERENCE: "The reference view is removed; scans begin without it.",
+}
 
 
 def new(name: str, is_simulated: bool, seed: int, address: str | None) -> None:
@@ -153,43 +170,11 @@ def reference(name: str, is_confirmed: bool) -> None:
     print(f"Stored: {_figure(path, REFERENCE)}.")
 
 
-def undo_reference(name: str) -> None:
-    """Remove the reference view."""
-    steps.undo(_path(name), REFERENCE)
-    print("The reference view is removed; scans begin without it.")
-
-
-def undo_table(name: str) -> None:
-    """Put back what was there before."""
+def undo(name: str, step: str) -> None:
+    """Take back what a step did last."""
     path = _path(name)
-    measuring.undo_table(path)
-    print(f"Platform, crop box and table in {path} are where they were before.")
-
-
-def undo_views(name: str) -> None:
-    """Put back what was there before."""
-    path = _path(name)
-    choosing_views.undo_views(path)
-    print(f"The views in {path} are those from before.")
-
-
-def undo_board(name: str) -> None:
-    """Forget the last entry."""
-    before = steps.undo_board(_path(name))
-    print("No board is entered." if before is None else f"The board of {before.time} counts again.")
-
-
-def undo_calibration(name: str) -> None:
-    """Put back what was there before."""
-    path = _path(name)
-    hand_eye.undo_calibration(path)
-    print(f"The hand-eye pose in {path} is as it was before the calibration.")
-
-
-def undo_check(name: str) -> None:
-    """Let the last check count no more."""
-    checking.undo_check(_path(name))
-    print("The last check counts no more.")
+    undoing.undo(path, step)
+    print(_UNDONE[step].format(file=path))
 
 
 def show(name: str) -> None:

@@ -156,9 +156,8 @@ def _candidates(scene: MotionScene, task: ProposalTask) -> list[Proposal]:
 def _field_of_view_deg(task: ProposalTask) -> tuple[float, float]:
     intrinsics: Intrinsics = task.rig.intrinsics
     width, height = task.image_size_px
-    across = 2 * np.degrees(np.arctan((width / 2 - task.aim_error_px) / intrinsics.fx))
-    down = 2 * np.degrees(np.arctan((height / 2 - task.aim_error_px) / intrinsics.fy))
-    return float(across), float(down)
+    margin = 2 * task.aim_error_px
+    return intrinsics.field_of_view_deg((width - margin, height - margin))
 
 
 def _is_seen(task: ProposalTask, outline_m: FloatArray, proposal: Proposal) -> bool:

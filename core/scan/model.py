@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import atan, degrees
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +28,11 @@ class Intrinsics:
     def matrix(self) -> FloatArray:
         """Camera matrix (3, 3)."""
         return np.array([[self.fx, 0.0, self.cx], [0.0, self.fy, self.cy], [0.0, 0.0, 1.0]])
+
+    def field_of_view_deg(self, image_size: tuple[float, float]) -> tuple[float, float]:
+        """Angles that an image of this width and height in pixels sees, about its middle."""
+        width, height = image_size
+        return 2 * degrees(atan(width / 2 / self.fx)), 2 * degrees(atan(height / 2 / self.fy))
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from core.geometry import FloatArray
 from core.motion.arm_models import Capsule, arm_shape, capsule_around_box
 from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
 from core.motion.pour.cell import GRIPPER, PourCell
+from core.motion.views import ViewTask
 from core.scan.model import CropBox, crop_box
 from hardware.cell.settings import ARMS, CellSettings
 
@@ -46,6 +48,19 @@ def with_crop_box(cell: CellSettings, box: CropBox) -> CellSettings:
     """Return the cell with another crop box."""
     corners = {"crop_min_m": box.min_m, "crop_max_m": box.max_m}
     return cell.model_copy(update={"place": cell.place.model_copy(update=corners)})
+
+
+def view_task(cell: CellSettings, low_m: FloatArray, high_m: FloatArray) -> ViewTask:
+    """Return the task of looking at a box's middle with the cell's camera; its corners are (3,)."""
+    return ViewTask(
+        T_flange_camera=cell.camera.pose,
+        target_m=(low_m + high_m) / 2,
+        box_min_m=low_m,
+        box_max_m=high_m,
+        home_rad=np.array(cell.robot.home_rad),
+        min_range_m=cell.camera.min_range_m,
+        min_clearance_m=cell.scan.min_clearance_m,
+    )
 
 
 def board_scene(cell: CellSettings) -> MotionScene:

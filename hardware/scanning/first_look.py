@@ -9,12 +9,12 @@ import numpy as np
 
 from core.errors import InputError
 from core.motion.box_views import in_short_order, views_clear_from_home
-from core.motion.views import Dome, ViewTask, choose_spread_views
+from core.motion.views import Dome, choose_spread_views
 from core.progress import Reporter
 from core.quality.object_box import ObjectBox, find_object_box
 from core.scan.model import CropBox, Intrinsics, crop_box
 from hardware.cell import Cell
-from hardware.cell.scene import motion_scene, object_space, with_crop_box
+from hardware.cell.scene import motion_scene, object_space, view_task, with_crop_box
 from hardware.cell.settings import CellSettings
 from hardware.scanning.moving import Moving
 from hardware.scanning.procedure import ScanControl, ScanProcedure
@@ -59,15 +59,7 @@ def first_look_views(settings: CellSettings) -> tuple[PlannedView, ...]:
     space = object_space(settings)
     low, high = np.array(space.min_m), np.array(space.max_m)
     scene = motion_scene(settings, space)
-    task = ViewTask(
-        T_flange_camera=settings.camera.pose,
-        target_m=(low + high) / 2,
-        box_min_m=low,
-        box_max_m=high,
-        home_rad=np.array(settings.robot.home_rad),
-        min_range_m=settings.camera.min_range_m,
-        min_clearance_m=settings.scan.min_clearance_m,
-    )
+    task = view_task(settings, low, high)
     chosen = choose_spread_views(views_clear_from_home(scene, task, STEEP), N_VIEWS)
     ordered = in_short_order(scene, chosen, task)
     return tuple(

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from math import atan, degrees
+from dataclasses import replace
 
 import numpy as np
 
 from core.geometry import FloatArray
-from core.motion.views import Dome, ReachableView, ViewTask, reachable_views
+from core.motion.views import Dome, ReachableView, reachable_views
 from core.quality.cavity import find_hidden_cavity
-from core.quality.measures import HiddenCavity
 from core.quality.next_views import DepthCamera, propose_views
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics
 from hardware.cell import Cell
+from hardware.cell.scene import view_task
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import Joints, name_views
 
@@ -50,7 +50,14 @@ def propose(
     cavity = find_hidden_cavity(volume, height_m)
     if len(cavity.region) == 0:
         return []
-    views = reachable_views(cell.scene, _task(cell, volume, cavity, intrinsics, image_size), INTO_OPENINGS)
+    place = cell.settings.place
+    hidden_m: FloatArray = volume.centers_m(cavity.region)
+    task = replace(
+        view_task(cell.settings, np.array(place.crop_min_m), np.array(place.crop_max_m)),
+        target_m=hidden_m.mean(axis=0),
+        field_of_view_deg=intrinsics.field_of_view_deg(image_size),
+    )
+    views = reachable_views(cell.scene, task, INTO_OPENINGS)
     different = _one_each(views)
     if not different:
         return []
@@ -74,31 +81,6 @@ def take_next_best_views(cell: Cell, procedure: ScanProcedure) -> int:
         procedure.take(name_views([joints for joints, _ in proposals], first=len(procedure.records)))
         taken += len(proposals)
     return taken
-
-
-def _task(
-    cell: Cell,
-    volume: TsdfVolume,
-    cavity: HiddenCavity,
-    intrinsics: Intrinsics,
-    image_size: tuple[int, int],
-) -> ViewTask:
-    hidden_m: FloatArray = volume.centers_m(cavity.region)
-    place = cell.settings.place
-    width, height = image_size
-    return ViewTask(
-        T_flange_camera=cell.settings.camera.pose,
-        target_m=hidden_m.mean(axis=0),
-        box_min_m=np.array(place.crop_min_m),
-        box_max_m=np.array(place.crop_max_m),
-        home_rad=np.array(cell.settings.robot.home_rad),
-        field_of_view_deg=(
-            2 * degrees(atan(width / 2 / intrinsics.fx)),
-            2 * degrees(atan(height / 2 / intrinsics.fy)),
-        ),
-        min_range_m=cell.settings.camera.min_range_m,
-        min_clearance_m=cell.settings.scan.min_clearance_m,
-    )
 
 
 def _one_each(views: tuple[ReachableView, ...]) -> list[ReachableView]:

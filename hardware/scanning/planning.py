@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan, degrees
 
 import numpy as np
 
 from core.errors import MotionError
 from core.motion.box_views import choose_box_views
-from core.motion.views import ViewTask
 from core.progress import Reporter
 from core.quality.object_box import ObjectBox
 from core.scan.model import CropBox, crop_box
 from hardware.cell import Cell
-from hardware.cell.scene import OBJECT_BOX, motion_scene, plans_views, with_crop_box
+from hardware.cell.scene import OBJECT_BOX, motion_scene, plans_views, view_task, with_crop_box
 from hardware.cell.settings import CellSettings
 from hardware.scanning.first_look import FirstLook, MovingIn, first_look_views, look_first
 from hardware.scanning.procedure import FEWEST_VIEWS, ScanControl
@@ -86,7 +84,10 @@ def _planned(cell: Cell, look: FirstLook, box: ObjectBox) -> ScanPlan:
     low, high = box.min_m - [MARGIN_M, MARGIN_M, 0], box.max_m + MARGIN_M
     low[2] = settings.place.crop_min_m[2]
     keep_out = crop_box(low, high)
-    task = _task(settings, look, box)
+    task = replace(
+        view_task(settings, box.min_m, box.max_m),
+        field_of_view_deg=look.intrinsics.field_of_view_deg(look.image_size),
+    )
     views = choose_box_views(motion_scene(settings, keep_out), task, settings.camera.baseline_m, N_VIEWS)
     if len(views) < FEWEST_VIEWS:
         size = " x ".join(f"{1000 * edge:.0f}" for edge in box.size_m)
@@ -96,23 +97,6 @@ def _planned(cell: Cell, look: FirstLook, box: ObjectBox) -> ScanPlan:
         )
     views_rad = tuple(tuple(view.joints_rad.tolist()) for view in views)
     return ScanPlan(views_rad, _around_both(settings.place.crop_box, keep_out), keep_out)
-
-
-def _task(settings: CellSettings, look: FirstLook, box: ObjectBox) -> ViewTask:
-    width, height = look.image_size
-    return ViewTask(
-        T_flange_camera=settings.camera.pose,
-        target_m=(box.min_m + box.max_m) / 2,
-        box_min_m=box.min_m,
-        box_max_m=box.max_m,
-        home_rad=np.array(settings.robot.home_rad),
-        field_of_view_deg=(
-            2 * degrees(atan(width / 2 / look.intrinsics.fx)),
-            2 * degrees(atan(height / 2 / look.intrinsics.fy)),
-        ),
-        min_range_m=settings.camera.min_range_m,
-        min_clearance_m=settings.scan.min_clearance_m,
-    )
 
 
 def _around_both(one: CropBox, other: CropBox) -> CropBox:

@@ -25,7 +25,8 @@ from app.operations.calibration.provenance import (
     write_looks,
 )
 from app.operations.calibration.reference import read_reference
-from app.operations.calibration.steps import steps, undo
+from app.operations.calibration.steps import steps
+from app.operations.calibration.undoing import undo
 from app.operations.calibration.views import views_are_for
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look

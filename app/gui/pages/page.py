@@ -46,6 +46,13 @@ class Page(QWidget):
         if button is not None and button.isEnabled():
             button.click()
 
+    def offer(self, button: QPushButton, is_shown: bool, is_enabled: bool = True) -> None:
+        """Show and enable a button; the focus of one that goes does not wander to some other control."""
+        if button.hasFocus() and not (is_shown and is_enabled):
+            self.setFocus()
+        button.setVisible(is_shown)
+        button.setEnabled(is_enabled)
+
     @override
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)

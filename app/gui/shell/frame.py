@@ -37,7 +37,7 @@ from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.state_mark import State, paint_mark, state_word
 from app.jobs.arm_events import ArmStatus
 
-_STOP_KEY_CODES = (Qt.Key.Key_F12, Qt.Key.Key_Pause)
+_STOP_KEY_CODES = [Qt.Key[f"Key_{key}"] for key in STOP_KEYS]
 _MARK_PX = 16
 _MOVED_RAD = 2e-4
 """Between two reported states; an arm at rest stays within it."""

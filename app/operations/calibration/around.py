@@ -14,7 +14,7 @@ from core.calibration.board import BoardSpec
 from core.calibration.checking import FEWEST_VIEWS
 from core.calibration.hand_eye import HandEyeFit
 from core.calibration.noise import Noise, pose_errors
-from core.calibration.proposing import ProposalTask, in_short_order, propose_poses
+from core.calibration.proposing import Proposal, ProposalTask, in_short_order, propose_poses
 from core.calibration.rig import Rig, all_derivatives
 from core.calibration.views import BoardView
 from core.errors import InputError, StageError
@@ -26,7 +26,7 @@ from hardware.cell import Cell
 from hardware.cell.settings import CellSettings
 
 N_VIEWS = 6
-MARGIN_PX = 25.0
+_MARGIN_PX = 25.0
 
 
 def calibrated_run(cell_file: Path, settings: CellSettings) -> tuple[Path, dict[str, Any]]:
@@ -73,24 +73,28 @@ def look_around(capture: Capture) -> tuple[BoardView, ...]:
         StageError: it is not in sight, or too few views could be used.
     """
     find_board(capture)
-    cell, collection = capture.cell, capture.collection
-    first = next(look.view for look in collection.looks if look.view is not None)
-    T_flange_camera = cell.settings.camera.pose
-    T_base_board = first.T_base_flange @ T_flange_camera @ first.T_camera_board
-    rig = Rig(T_flange_camera, T_base_board, collection.intrinsics)
-    task = ProposalTask(
-        rig, collection.board, collection.image_size_px, collection.home_rad, MARGIN_PX,
-        cell.settings.camera.min_range_m,
-    )  # fmt: skip
-    here = np.array(cell.robot.state().joints_rad)
-    capture.go_and_look(in_short_order(propose_poses(cell.scene, task, N_VIEWS), here))
-    views = collection.views
+    here = np.array(capture.cell.robot.state().joints_rad)
+    capture.go_and_look(in_short_order(poses_around(capture, N_VIEWS), here))
+    views = capture.collection.views
     if len(views) < FEWEST_VIEWS:
         raise StageError(
             f"Only {len(views)} views of the board could be used; see that the arm can go around it, and "
             "look again."
         )
     return views
+
+
+def poses_around(capture: Capture, most: int) -> tuple[Proposal, ...]:
+    """Return up to `most` poses that see the board well from where it was found; best first."""
+    settings, collection = capture.cell.settings, capture.collection
+    first = next(look.view for look in collection.looks if look.view is not None)
+    T_base_board = first.T_base_flange @ settings.camera.pose @ first.T_camera_board
+    rig = Rig(settings.camera.pose, T_base_board, collection.intrinsics)
+    task = ProposalTask(
+        rig, collection.board, collection.image_size_px, collection.home_rad, _MARGIN_PX,
+        collection.min_range_m,
+    )  # fmt: skip
+    return propose_poses(capture.cell.scene, task, most)
 
 
 def lay_simulated_board(cell: Cell, middle_m: FloatArray, yaw_rad: float) -> None:

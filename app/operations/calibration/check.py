@@ -18,10 +18,9 @@ from app.operations.calibration.around import (
 )
 from app.operations.calibration.capture import NOBODY, CaptureObserver, capturing
 from app.operations.calibration.hand_eye import entered_board
-from app.operations.calibration.provenance import CHECK, RESULT, latest_result, now, versions, withdraw
+from app.operations.calibration.provenance import CHECK, RESULT, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.checking import Agreement, check_agreement
-from core.errors import InputError
 from core.files import write_json
 from core.progress import Reporter
 from core.session import explained
@@ -82,15 +81,3 @@ def check_cell(
     with explained(found.folder):
         write_json(found.folder / RESULT, result | capture.facts | {"versions": versions()})
     return found
-
-
-def undo_check(cell_file: Path) -> None:
-    """Let the newest check count no more; what was taken is kept.
-
-    Raises:
-        InputError: there is none.
-    """
-    latest = latest_result(cell_file, CHECK)
-    if latest is None:
-        raise InputError(f"No check of {cell_file} can be undone; there is none.")
-    withdraw(latest[0])

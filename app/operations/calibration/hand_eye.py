@@ -21,13 +21,11 @@ from app.operations.calibration.provenance import (
     HAND_EYE,
     RESULT,
     VIEWS,
-    latest_result,
     now,
     read_boards,
     read_looks,
     runs,
     versions,
-    withdraw,
 )
 from app.operations.scan_run import ScanOperator
 from core.calibration.accuracy import Bounds, HeldOut, bounds, hold_out
@@ -143,27 +141,6 @@ def conclude(cell_file: Path, settings: CellSettings, capture: Capture) -> Calib
         write_json(capture.folder / RESULT, table)
     write_hand_eye(cell_file, fit.T_flange_camera)
     return found
-
-
-def undo_calibration(cell_file: Path) -> FloatArray:
-    """Put back the hand-eye pose from before the newest calibration; return it. What was taken is kept.
-
-    Raises:
-        InputError: there is none, or the file was changed since.
-    """
-    latest = latest_result(cell_file, HAND_EYE)
-    if latest is None:
-        raise InputError(f"No calibration of {cell_file} can be undone; there is none.")
-    folder, table = latest
-    if not is_same(table["after"], read_cell(cell_file).camera.pose):
-        raise InputError(
-            f"The hand-eye pose in {cell_file} was changed since the calibration of {table['time']}; "
-            "correct it there."
-        )
-    before: FloatArray = table["before"]
-    write_hand_eye(cell_file, before)
-    withdraw(folder)
-    return before
 
 
 def is_same(T_first: FloatArray, T_second: FloatArray) -> bool:

@@ -9,15 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from app.operations.calibration.around import MARGIN_PX, calibrated_run
+from app.operations.calibration.around import calibrated_run, poses_around
 from app.operations.calibration.capture import NOBODY, Capture, CaptureObserver, capturing, find_board
 from app.operations.calibration.hand_eye import entered_board
 from app.operations.calibration.provenance import DRIFT, REFERENCE, RESULT, latest_result, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
 from core.calibration.drift import N_IMAGES, Drift, StillLook, measure_drift, still_look
-from core.calibration.proposing import ProposalTask, propose_poses
-from core.calibration.rig import Rig
 from core.errors import InputError, MotionError, StageError
 from core.files import reading, write_json
 from core.geometry import FloatArray
@@ -68,7 +66,7 @@ def store_reference(
         laid()
     with capturing(cell_file, settings, board, REFERENCE, facts, reporter, operator, observer, 1) as capture:
         find_board(capture)
-        joints = _best_pose(capture, settings.camera.pose)
+        joints = _best_pose(capture)
         look = still_look(capture.look_still(joints, N_IMAGES))
     result = {"time": now(), "joints_rad": joints.tolist(), **_look_table(look)}
     with explained(capture.folder):
@@ -162,21 +160,8 @@ def judge_drift(drift: Drift, limits: ScanSettings, reporter: Reporter) -> None:
         )
 
 
-def _best_pose(capture: Capture, T_flange_camera: FloatArray) -> FloatArray:
-    collection = capture.collection
-    first = next(look.view for look in collection.looks if look.view is not None)
-    rig = Rig(
-        T_flange_camera, first.T_base_flange @ T_flange_camera @ first.T_camera_board, collection.intrinsics
-    )
-    task = ProposalTask(
-        rig,
-        collection.board,
-        collection.image_size_px,
-        collection.home_rad,
-        MARGIN_PX,
-        collection.min_range_m,
-    )
-    poses = propose_poses(capture.cell.scene, task, 1)
+def _best_pose(capture: Capture) -> FloatArray:
+    poses = poses_around(capture, 1)
     if not poses:
         raise MotionError("The arm reaches no place from which the board is seen well; lay it elsewhere.")
     return poses[0].joints_rad

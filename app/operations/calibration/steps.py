@@ -10,9 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.operations.calibration.check import undo_check
 from app.operations.calibration.devices import device_table
-from app.operations.calibration.hand_eye import is_same, undo_calibration
+from app.operations.calibration.hand_eye import is_same
 from app.operations.calibration.provenance import (
     ARM,
     BOARD,
@@ -28,16 +27,14 @@ from app.operations.calibration.provenance import (
     latest_result,
     now,
     read_boards,
-    withdraw,
     write_boards,
 )
-from app.operations.calibration.table import is_in_file, undo_table
-from app.operations.calibration.views import are_in_file, undo_views, views_are_for
+from app.operations.calibration.table import is_in_file
+from app.operations.calibration.views import are_in_file, views_are_for
 from core.calibration.board import BoardSpec
 from core.calibration.checking import MOST_RATIO
 from core.calibration.drift import Drift
 from core.calibration.printing import write_board_pdf
-from core.errors import InputError
 from core.files import make_folder, reading
 from core.session import explained
 from hardware.cell import read_cell
@@ -83,29 +80,6 @@ def steps(cell_file: Path) -> tuple[Step, ...]:
     return tuple(way(cell_file) for way in ways)
 
 
-def undo(cell_file: Path, step: str) -> None:
-    """Take back what a step did last; what was recorded stays.
-
-    Raises:
-        InputError: it was never done, or the cell's file was changed since.
-        SessionError: the disk refuses.
-    """
-    ways: dict[str, Callable[[Path], object]] = {
-        BOARD: undo_board,
-        HAND_EYE: undo_calibration,
-        CHECK: undo_check,
-        TABLE: undo_table,
-        VIEWS_STEP: undo_views,
-    }
-    if step in ways:
-        ways[step](cell_file)
-        return
-    latest = latest_result(cell_file, step)
-    if latest is None:
-        raise InputError(f"The {step} of {cell_file} was not tried yet; there is nothing to undo.")
-    withdraw(latest[0])
-
-
 def enter_board(cell_file: Path, board: BoardSpec, paper: str, measured_m: float | None) -> Path:
     """Print a board to a PDF beside the cell's file, or enter what was measured on the print.
 
@@ -134,19 +108,6 @@ def enter_board(cell_file: Path, board: BoardSpec, paper: str, measured_m: float
         entry = BoardEntry(board, False, now())
     write_boards(cell_file, [*entries, entry])
     return pdf
-
-
-def undo_board(cell_file: Path) -> BoardEntry | None:
-    """Forget the board that was entered last; return the one before it.
-
-    Raises:
-        InputError: there is none.
-    """
-    entries = read_boards(cell_file)
-    if not entries:
-        raise InputError(f"No board of {cell_file} can be undone; there is none.")
-    write_boards(cell_file, entries[:-1])
-    return entries[-2] if len(entries) > 1 else None
 
 
 def _device(cell_file: Path, step: str) -> Step:

@@ -19,11 +19,11 @@ from app.operations.calibration.around import (
 from app.operations.calibration.capture import NOBODY, CaptureObserver, capturing
 from app.operations.calibration.cell_file import write_place
 from app.operations.calibration.hand_eye import entered_board
-from app.operations.calibration.provenance import RESULT, TABLE, latest_result, now, versions, withdraw
+from app.operations.calibration.provenance import RESULT, TABLE, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
 from core.calibration.checking import MOST_RATIO, locate_board
-from core.errors import InputError, StageError
+from core.errors import StageError
 from core.files import write_json
 from core.geometry import FloatArray, transform_points
 from core.progress import Reporter
@@ -110,24 +110,6 @@ def measure_table(
         write_json(found.folder / RESULT, result | capture.facts | {"versions": versions()})
     write_place(cell_file, after)
     return found
-
-
-def undo_table(cell_file: Path) -> None:
-    """Put back where platform, table and crop box were before the newest measurement.
-
-    Raises:
-        InputError: there is none, or the file was changed since.
-    """
-    latest = latest_result(cell_file, TABLE)
-    if latest is None:
-        raise InputError(f"No measured platform of {cell_file} can be undone; there is none.")
-    folder, table = latest
-    if not is_in_file(read_cell(cell_file).place, table["after"]):
-        raise InputError(
-            f"Platform or table in {cell_file} were changed since {table['time']}; correct them there."
-        )
-    write_place(cell_file, table["before"])
-    withdraw(folder)
 
 
 def is_in_file(place: PlaceSettings, wanted: dict[str, Any]) -> bool:

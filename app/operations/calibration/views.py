@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import atan, degrees
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +17,16 @@ from app.operations.calibration.provenance import (
     new_run,
     now,
     versions,
-    withdraw,
 )
 from core.errors import InputError, MotionError
 from core.files import reading, write_json
 from core.motion.box_views import choose_box_views
 from core.motion.views import ReachableView, ViewTask
 from core.progress import Reporter
+from core.scan.model import Intrinsics
 from core.session import explained
 from hardware.cell import read_cell
-from hardware.cell.scene import motion_scene
+from hardware.cell.scene import motion_scene, view_task
 from hardware.cell.settings import CellSettings
 
 USUAL_VIEWS = 24
@@ -95,18 +94,6 @@ def choose_views(cell_file: Path, reporter: Reporter, n_views: int = USUAL_VIEWS
     return found
 
 
-def undo_views(cell_file: Path) -> None:
-    """Put back the views from before; raises `InputError` if there were none, or the file was changed."""
-    latest = latest_result(cell_file, VIEWS_STEP)
-    if latest is None:
-        raise InputError(f"No views of {cell_file} can be undone; none were chosen.")
-    folder, table = latest
-    if not are_in_file(read_cell(cell_file), table["after"]):
-        raise InputError(f"The views in {cell_file} were changed since {table['time']}; correct them there.")
-    write_views(cell_file, table["before"])
-    withdraw(folder)
-
-
 def are_in_file(settings: CellSettings, views_rad: Any) -> bool:
     """Whether a cell's file holds these views."""
     held, wanted = np.array(settings.scan.views_rad), np.array(views_rad, dtype=float)
@@ -137,19 +124,11 @@ def _task(settings: CellSettings, cell_file: Path) -> ViewTask:
     place = settings.place
     low, high = np.array(place.crop_min_m), np.array(place.crop_max_m)
     low[2] = place.platform_height_m
-    task = ViewTask(
-        T_flange_camera=settings.camera.pose,
-        target_m=(low + high) / 2,
-        box_min_m=low,
-        box_max_m=high,
-        home_rad=np.array(settings.robot.home_rad),
-        min_range_m=settings.camera.min_range_m,
-        min_clearance_m=settings.scan.min_clearance_m,
-    )
+    task = view_task(settings, low, high)
     latest = latest_result(cell_file, HAND_EYE)
     if latest is None or "intrinsics" not in latest[1]:
         return task
     with reading(latest[0] / RESULT):
-        (fx, fy, _, _), (width, height) = latest[1]["intrinsics"], latest[1]["size_px"]
-        view_deg = (2 * degrees(atan(width / 2 / fx)), 2 * degrees(atan(height / 2 / fy)))
+        width, height = latest[1]["size_px"]
+        view_deg = Intrinsics(*latest[1]["intrinsics"]).field_of_view_deg((width, height))
     return replace(task, field_of_view_deg=view_deg)

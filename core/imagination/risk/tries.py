@@ -143,13 +143,11 @@ def run_race(
         context.reporter.progress(STAGE, race.n_spent, race.n_most)
         pour = Pour(grid.pivot_m[i, j], float(grid.theta_rad[i]))
         cups = [draw_cups(parameters, k, grid.n_cups, center_m) for k in tries]
+        drawn_runs = iter(runs.of(context, [one for drawn in cups for one in drawn]))
         tasks = [
             in_turn_task(
                 target,
-                [
-                    PouredCup(run, one.seen_from_object(pour.T_world_E))
-                    for one, run in zip(drawn, runs.of(context, drawn), strict=True)
-                ],
+                [PouredCup(next(drawn_runs), one.seen_from_object(pour.T_world_E)) for one in drawn],
                 drawn[0].parameters(parameters),
             )
             for drawn in cups

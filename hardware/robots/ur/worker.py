@@ -176,7 +176,11 @@ class _Worker:
 
     def _ask_set_payload(self, payload_kg: float) -> None:
         """Tell the controller what the flange carries, and read it back."""
-        self._control.setPayload(payload_kg, self._payload_center_m)
+        if not self._control.setPayload(payload_kg, self._payload_center_m):
+            raise MoveRefused(
+                f"The controller did not take the payload of {payload_kg:g} kg; see what its panel shows, "
+                "then recover the robot."
+            )
         deadline_s = time.monotonic() + _TAKEN_S
         while abs(self._receive.getPayload() - payload_kg) > _SAME:
             if time.monotonic() > deadline_s:

@@ -4,9 +4,10 @@ import pytest
 from app.operations.calibration.capture import CaptureObserver
 from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
 from app.operations.calibration.check import check_cell
-from app.operations.calibration.hand_eye import calibrate_cell, undo_calibration
+from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import HAND_EYE, read_looks, runs
-from app.operations.calibration.steps import StepState, enter_board, steps, undo_board
+from app.operations.calibration.steps import StepState, enter_board, steps
+from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
 from core.calibration.rig import exp_pose, log_pose
 from core.errors import Cancelled, InputError, StageError
@@ -77,12 +78,12 @@ def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
 
     enter_board(path, BoardSpec(), "a4", 0.0299)
     assert states(path) == {"board": StepState.DONE, "hand-eye": StepState.STALE, "check": StepState.STALE}
-    undo_board(path)
-    undo_calibration(path)
+    undo(path, "board")
+    undo(path, "hand-eye")
     assert np.allclose(read_cell(path).camera.pose, before.camera.pose, atol=1e-8)
     assert states(path)["hand-eye"] is StepState.OPEN and states(path)["check"] is StepState.STALE
-    with pytest.raises(InputError, match="there is none"):
-        undo_calibration(path)
+    with pytest.raises(InputError, match="there is nothing to undo"):
+        undo(path, "hand-eye")
 
 
 @pytest.mark.system

@@ -10,8 +10,9 @@ from app.operations.calibration.cell_file import known_cells, new_cell, write_pl
 from app.operations.calibration.devices import examine_device
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import RESULT, calibration_folder, runs
-from app.operations.calibration.steps import StepState, enter_board, steps, undo
+from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.table import measure_table
+from app.operations.calibration.undoing import undo
 from app.operations.calibration.views import choose_views
 from core.calibration.board import BoardSpec
 from core.errors import InputError, StageError

@@ -9,7 +9,8 @@ from app.operations.calibration.cell_file import new_cell
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import DRIFT, REFERENCE, RESULT, runs
 from app.operations.calibration.reference import check_drift, read_reference, store_reference
-from app.operations.calibration.steps import StepState, enter_board, steps, undo
+from app.operations.calibration.steps import StepState, enter_board, steps
+from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
 from core.calibration.rig import exp_pose
 from core.errors import InputError, SessionError, StageError

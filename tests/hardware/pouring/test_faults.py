@@ -43,22 +43,6 @@ POURED_AFTER = ("protective stop", "link drop", signal.SIGKILL)
 PHASES = {"approach": ("to the cup", 0.5), "carry": ("carry", 0.5), "pour": ("pour", 0.4)}
 
 
-@pytest.fixture(scope="module")
-def lasting(tmp_path_factory):
-    """One program for all faults: each test's pour is the one after the fault before."""
-    with Rig(tmp_path_factory.mktemp("session")) as rig:
-        yield rig
-
-
-@pytest.fixture
-def rig(lasting):
-    """The lasting one; started again only where a failed test left the arm on its path."""
-    yield lasting
-    if not lasting.is_fit_for_the_next_test:
-        lasting.__exit__(None, None, None)
-        lasting.__enter__()
-
-
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_stops_the_arm_and_it_recovers_without_a_restart(rig, fault, phase):

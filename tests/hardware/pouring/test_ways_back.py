@@ -27,21 +27,6 @@ STOPPED_WITHIN_S = 0.3
 SPEED_UP = 2.0
 
 
-@pytest.fixture(scope="module")
-def lasting(tmp_path_factory):
-    with Rig(tmp_path_factory.mktemp("session"), SPEED_UP) as rig:
-        yield rig
-
-
-@pytest.fixture
-def rig(lasting):
-    """The lasting one; started again only where a failed test left the arm on its path."""
-    yield lasting
-    if not lasting.is_fit_for_the_next_test:
-        lasting.__exit__(None, None, None)
-        lasting.__enter__()
-
-
 def stopped_in(rig, move, share=0.5):
     thread = rig.pour_until(move, share)
     rig.controller.command("program stop")

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QPushButton, QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
@@ -248,9 +248,9 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         can_begin = now.is_idle and not obstacle and now.contents is not None
         is_complete = side.form.is_complete if now.is_new else True
         is_asked = now.is_running and bool(now.question)
-        self._offer(side.primary, is_asked or not now.is_running, is_asked or (can_begin and is_complete))
-        self._offer(side.undo, now.can_undo and not now.is_running, now.is_idle)
-        self._offer(side.start_over, now.can_continue and not now.is_running, can_begin)
+        self.offer(side.primary, is_asked or not now.is_running, is_asked or (can_begin and is_complete))
+        self.offer(side.undo, now.can_undo and not now.is_running, now.is_idle)
+        self.offer(side.start_over, now.can_continue and not now.is_running, can_begin)
         for widget in (side.form, side.options, side.steps):
             widget.setEnabled(now.is_idle)
 
@@ -269,13 +269,6 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         words = step_words(chosen.name, now.is_simulated)
         figure = "" if chosen.state is StepState.OPEN else f"{capitalized(chosen.figure)}."
         self.side.show_step(words.title, words.what, figure)
-
-    def _offer(self, button: QPushButton, is_shown: bool, is_enabled: bool = True) -> None:
-        """Show and enable a button; the focus of one that goes does not wander to some other control."""
-        if button.hasFocus() and not (is_shown and is_enabled):
-            self.setFocus()
-        button.setVisible(is_shown)
-        button.setEnabled(is_enabled)
 
 
 def _is_done(step: Step) -> bool:

@@ -12,7 +12,7 @@ from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
 from app.gui.pages.cell.side import StepOptions
 from app.jobs.cell_work import CellWork
-from app.operations.calibration import steps
+from app.operations.calibration import steps, undoing
 from app.operations.calibration.cell_file import known_cells, new_cell
 from app.operations.calibration.provenance import (
     ARM,
@@ -91,7 +91,7 @@ class CellJobs:
 
     def undo(self, step: str) -> None:
         """Take back a step."""
-        undo = partial(steps.undo, self._path(), step)
+        undo = partial(undoing.undo, self._path(), step)
         self._desk.background.run(_IN_BACKGROUND, undo, lambda _: self.read_again())
 
     def resume(self) -> None:

@@ -161,6 +161,8 @@ class ScanView(QWidget):
 
     def show_box(self, box: CropBox | None) -> None:
         """Show the box that a scan's plan laid around the object; none: the cell's."""
+        if box == self._box:
+            return
         self._box = box
         if self._cell is not None and not self._is_alone:
             self._draw_box(self._cell)

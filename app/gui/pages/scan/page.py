@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtWidgets import QPushButton, QVBoxLayout
+from PySide6.QtWidgets import QVBoxLayout
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
@@ -304,27 +304,20 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
         )
         has_selected = self._images.selected is not None
         can_act = now.is_idle and (verdict.action is Action.CHECK or now.can_scan)
-        self._offer(self.left.verdict.action, verdict.action is not Action.NONE, can_act)
-        self._offer(side.start_over, now.can_continue and not now.is_scanning, now.can_scan)
+        self.offer(self.left.verdict.action, verdict.action is not Action.NONE, can_act)
+        self.offer(side.start_over, now.can_continue and not now.is_scanning, now.can_scan)
         is_scan = now.contents is not None and now.contents.source == "scan"
-        self._offer(side.take_again, is_scan and now.is_same, now.can_take_again and has_selected)
-        self._offer(side.follow, now.is_scanning and has_selected)
-        self._offer(side.import_folder, True, now.is_idle)
-        self._offer(side.import_mesh, True, now.is_idle)
+        self.offer(side.take_again, is_scan and now.is_same, now.can_take_again and has_selected)
+        self.offer(side.follow, now.is_scanning and has_selected)
+        self.offer(side.import_folder, True, now.is_idle)
+        self.offer(side.import_mesh, True, now.is_idle)
         side.primary.setText(now.primary_text)
-        self._offer(side.primary, True, now.can_pause if now.is_scanning else now.can_scan)
+        self.offer(side.primary, True, now.can_pause if now.is_scanning else now.can_scan)
         if self.hasFocus() and side.primary.isEnabled():
             side.primary.setFocus()
         side.choice.setEnabled(now.is_idle)
         side.show_camera(now.contents is None or now.contents.source != "mesh" or now.is_scanning)
         side.remark(*remarks_of(now))
-
-    def _offer(self, button: QPushButton, is_shown: bool, is_enabled: bool = True) -> None:
-        """Show and enable a button; the focus of one that goes does not wander to some other control."""
-        if button.hasFocus() and not (is_shown and is_enabled):
-            self.setFocus()
-        button.setVisible(is_shown)
-        button.setEnabled(is_enabled)
 
 
 def _prepared(grown: MeshGrown) -> PreparedMesh:

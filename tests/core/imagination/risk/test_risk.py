@@ -12,6 +12,15 @@ from core.progress import Reporter
 from core.workers import WorkerPool
 
 CENTER_M = np.array([0.35, -0.17, 0.12])
+SMALL_CANDIES = {
+    "containability.verdict": "capacity",
+    "pouring.amount": "number",
+    "pouring.n_packings": 1,
+    "particle.diameter_m": 0.0119,
+    "particle.height_m": 0.0063,
+    "particle.mass_kg": 0.0006,
+}
+"""Of which the dish holds 119, and as many are poured as are asked for."""
 
 
 @pytest.fixture(scope="module")
@@ -103,17 +112,15 @@ def test_several_cups_are_filled_from_one_bag_and_poured_into_one_object():
 def two_cups(dish, quick, pool):
     """150 candies for a dish that holds 119, in two cups of which the first fits."""
     errors = dict.fromkeys(("object_error_m", "object_error_rad", "cup_error_m", "cup_error_rad"), 0.0)
-    settings = {f"risk.{name}": value for name, value in errors.items()} | {
-        "risk.n_tries": 4,
-        "risk.candy_spread": 0.0,
-        "containability.verdict": "capacity",
-        "pouring.amount": "number",
-        "pouring.n_packings": 1,
-        "particle.diameter_m": 0.0119,
-        "particle.height_m": 0.0063,
-        "particle.mass_kg": 0.0006,
-        "pouring.n_pour": 150,
-    }
+    settings = (
+        SMALL_CANDIES
+        | {f"risk.{name}": value for name, value in errors.items()}
+        | {
+            "risk.n_tries": 4,
+            "risk.candy_spread": 0.0,
+            "pouring.n_pour": 150,
+        }
+    )
     return imagine(dish, apply_settings(quick, settings), pool, Reporter())
 
 
@@ -135,17 +142,7 @@ def test_a_clean_first_cup_is_no_try_of_the_whole_amount(two_cups):
 @pytest.fixture(scope="module")
 def doubtful(dish, quick, pool):
     """100 candies for a dish that holds 119: heaped at the stream, some go over its wall."""
-    settings = {
-        "risk.n_tries": 8,
-        "risk.wanted_clean": 0.7,
-        "containability.verdict": "capacity",
-        "pouring.amount": "number",
-        "pouring.n_packings": 1,
-        "particle.diameter_m": 0.0119,
-        "particle.height_m": 0.0063,
-        "particle.mass_kg": 0.0006,
-        "pouring.n_pour": 100,
-    }
+    settings = SMALL_CANDIES | {"risk.n_tries": 8, "risk.wanted_clean": 0.7, "pouring.n_pour": 100}
     return imagine(dish, apply_settings(quick, settings), pool, Reporter())
 
 

@@ -1,0 +1,82 @@
+"""Taking back what a step of a cell's set-up did last; what was recorded stays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from app.operations.calibration.cell_file import write_hand_eye, write_place, write_views
+from app.operations.calibration.hand_eye import is_same
+from app.operations.calibration.provenance import (
+    BOARD,
+    HAND_EYE,
+    TABLE,
+    VIEWS_STEP,
+    latest_result,
+    read_boards,
+    withdraw,
+    write_boards,
+)
+from app.operations.calibration.table import is_in_file
+from app.operations.calibration.views import are_in_file
+from core.errors import InputError
+from hardware.cell import read_cell
+from hardware.cell.settings import CellSettings
+
+
+@dataclass(frozen=True)
+class _Writing:
+    """What a step wrote into the cell's file.
+
+    Attributes:
+        is_there: whether the file still holds what the step's record calls `after`.
+        write: puts the record's `before` back.
+    """
+
+    is_there: Callable[[CellSettings, Any], bool]
+    write: Callable[[Path, Any], None]
+
+
+_WRITINGS = {
+    HAND_EYE: _Writing(lambda settings, after: is_same(after, settings.camera.pose), write_hand_eye),
+    TABLE: _Writing(lambda settings, after: is_in_file(settings.place, after), write_place),
+    VIEWS_STEP: _Writing(are_in_file, write_views),
+}
+
+
+def undo(cell_file: Path, step: str) -> None:
+    """Take back what a step did last.
+
+    Raises:
+        InputError: it was never done, or the cell's file was changed since.
+        SessionError: the disk refuses.
+    """
+    if step == BOARD:
+        _forget_board(cell_file)
+        return
+    latest = latest_result(cell_file, step)
+    if latest is None:
+        raise _none_to_undo(cell_file, step)
+    folder, table = latest
+    if step in _WRITINGS:
+        writing = _WRITINGS[step]
+        if not writing.is_there(read_cell(cell_file), table["after"]):
+            raise InputError(
+                f"The values that the step '{step}' wrote into {cell_file} were changed since "
+                f"{table['time']}; correct them there."
+            )
+        writing.write(cell_file, table["before"])
+    withdraw(folder)
+
+
+def _forget_board(cell_file: Path) -> None:
+    entries = read_boards(cell_file)
+    if not entries:
+        raise _none_to_undo(cell_file, BOARD)
+    write_boards(cell_file, entries[:-1])
+
+
+def _none_to_undo(cell_file: Path, step: str) -> InputError:
+    return InputError(f"The step '{step}' of {cell_file} was not done yet, so there is nothing to undo.")
