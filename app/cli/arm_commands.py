@@ -12,12 +12,14 @@ from typing import Any
 from app.cli.operators import PrintingOperator, TerminalOperator, plan_lines
 from app.cli.parameters import NOTHING_CHOSEN
 from app.cli.terminal import TerminalReporter, working
+from app.library.places import cup_runs_folder
 from app.operations import pouring
 from app.operations.choosing import choose_pour
 from app.operations.doctor import examine
 from app.operations.outcome import enter_outcome
+from core.imagination.kept_runs import KeptRuns
 from core.motion.pour.planning import plan_pour
-from core.session import Session
+from core.session import Session, explained
 from core.session.operator_choice import withdraw_operator_choice
 from core.session.pour_runs import note_emptied
 from hardware.simulation.ur_controller.identity import CONTROL_PORT, identity
@@ -87,6 +89,13 @@ def doctor(cell_file: Path | None) -> bool:
             print(f"    -> {finding.problem}")
             is_fine = False
     return is_fine
+
+
+def clear_cache() -> None:
+    """Remove what was computed of the cup for all sessions; it is computed again when it is needed."""
+    kept = KeptRuns(cup_runs_folder())
+    with explained(kept.folder):
+        kept.empty()
 
 
 def serve_controller(address: str, model: str, version: str, speed_up: float, faults: Sequence[str]) -> None:

@@ -303,10 +303,17 @@ def parameters(
 
 
 @app.command()
-def doctor(cell: CellOption = None) -> None:
+def doctor(
+    cell: CellOption = None,
+    clear_cache: Annotated[
+        bool, typer.Option("--clear-cache", help="First remove the cup runs that sessions share.")
+    ] = False,
+) -> None:
     """Check this installation (versions, renderer, known-bad packages, free disk) and a cell's devices."""
     from app.cli import arm_commands
 
+    if clear_cache:
+        arm_commands.clear_cache()
     raise typer.Exit(0 if arm_commands.doctor(cell) else 1)
 
 

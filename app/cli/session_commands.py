@@ -20,6 +20,7 @@ from app.library.index import Library
 from app.library.places import sessions_folder
 from app.library.summary import PourScore, SessionSummary
 from app.operations import pouring
+from app.operations.ahead import computing_ahead
 from app.operations.scan_run import ScanRequest
 from app.operations.scanning import scan_object
 from app.operations.session import bring_report_up_to_date
@@ -64,7 +65,9 @@ def scan(
     terminal = TerminalReporter()
     operator = PrintingOperator(session) if is_confirmed else TerminalOperator(session, terminal)
     with working(session, choices, workers, terminal=terminal) as pipeline:
-        scan_object(pipeline, settings, source, replace(request, cell_file=cell_file), operator=operator)
+        with computing_ahead(pipeline.parameters, pipeline.pool):
+            request = replace(request, cell_file=cell_file)
+            scan_object(pipeline, settings, source, request, operator=operator)
         quality = pipeline.quality()
         pipeline.colors()
     print(f"{len(quality.views)} views in {session}.")
@@ -120,7 +123,8 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
     """Do the whole job with a built-in object."""
     builtin_object(name)  # an unknown name is refused before anything is started
     with working(out, choices, workers) as pipeline:
-        scan_object(pipeline, read_cell(), name)
+        with computing_ahead(pipeline.parameters, pipeline.pool):
+            scan_object(pipeline, read_cell(), name)
         result = pipeline.imagination()
         _print_verdict(result)
         if result.choice is not None and not pouring.was_poured(pipeline.session):

@@ -21,6 +21,7 @@ from app.jobs.messages import CancelJob, DoNow, EndHost, Failed, FailureKind, Fi
 from app.jobs.service import JobReporter, Service
 from core.child_process import ChildProcess
 from core.errors import Cancelled, PoursightError
+from core.progress import Reporter
 
 S = TypeVar("S", bound=Service)
 Arguments = TypeVarTuple("Arguments")
@@ -158,8 +159,9 @@ class _Server:
         self._connection = connection
         self._sending = threading.Lock()
         self._service = kind(self._send)
-        self._jobs: queue.SimpleQueue[StartJob] = queue.SimpleQueue()
+        self._jobs: queue.SimpleQueue[StartJob | None] = queue.SimpleQueue()
         self._reporter = JobReporter(self._send)
+        self._idle = Reporter()
 
     def run(self) -> None:
         threading.Thread(target=self._work, daemon=True).start()
@@ -179,14 +181,19 @@ class _Server:
         elif isinstance(message, DoNow):
             with suppress(PoursightError):
                 message.method(self._service, *message.arguments)
+            self._jobs.put(None)  # it may have left something to do in idle time
 
     def _work(self) -> None:
         if self._service.GIVES_WAY:
             os.nice(_NICENESS)  # of this thread and of what it starts; the listening one stays quick
         self._service.prepare()
         while True:
+            with suppress(PoursightError):  # nobody asked for it; the job that needs it will be told
+                while self._jobs.empty() and self._service.use_idle_time(self._idle):
+                    pass
             job = self._jobs.get()
-            self._send(self._carry_out(job))
+            if job is not None:
+                self._send(self._carry_out(job))
 
     def _carry_out(self, job: StartJob) -> Message:
         try:
@@ -212,6 +219,7 @@ class _Server:
         Returning lets Python clean up what it shares with the workers; it does not wait for the job's thread.
         """
         threading.Thread(target=_leave_soon, daemon=True).start()
+        self._idle.cancel()
         self._reporter.cancel()
         self._service.close()
 

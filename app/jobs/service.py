@@ -78,5 +78,12 @@ class Service:
     def prepare(self) -> None:
         """Import and start what the first job would wait for."""
 
+    def use_idle_time(self, reporter: Reporter) -> bool:  # noqa: ARG002
+        """Do a little of what a later job will want; return whether there is more of it to do.
+
+        `reporter` cancels it when the process ends; nobody reads what it reports.
+        """
+        return False
+
     def close(self) -> None:
         """Release everything; the process ends afterwards."""

@@ -13,9 +13,12 @@ from app.jobs.service import ForwardingReporter, JobReporter, Service
 from app.operations.session import SessionTask, working_on
 from core.geometry import FloatArray
 from core.mesh import TriangleMesh
+from core.parameters import Parameters
+from core.progress import Reporter
 from core.workers import Task, WorkerPool
 
 if TYPE_CHECKING:
+    from core.imagination.risk.ahead import CupRunsAhead
     from hardware.cell.settings import CellSettings
 
 
@@ -38,6 +41,8 @@ class SessionWork(Service):
     def __init__(self, send: Callable[[Event], None]) -> None:
         super().__init__(send)
         self._pool = WorkerPool()
+        self._ahead: CupRunsAhead | None = None
+        self._wanted_ahead: Parameters | None = None
 
     def prepare(self) -> None:
         """Start the workers, and import what the first stage needs."""
@@ -49,6 +54,22 @@ class SessionWork(Service):
     def close(self) -> None:
         """End the workers."""
         self._pool.close()
+
+    def compute_ahead(self, parameters: Parameters) -> None:
+        """Use idle time for what pours with these parameters will need, whatever the object; an order."""
+        self._wanted_ahead = parameters
+
+    def use_idle_time(self, reporter: Reporter) -> bool:
+        """Make some of the cup's runs, if somebody wants them."""
+        from app.operations.ahead import runs_ahead
+
+        wanted, self._wanted_ahead = self._wanted_ahead, None
+        if wanted is not None:
+            self._ahead = runs_ahead(wanted, self._pool, reporter)
+        ahead, self._ahead = self._ahead, None
+        if ahead is not None and ahead.make_some():
+            self._ahead = ahead
+        return self._ahead is not None
 
     def import_scan(self, reporter: JobReporter, task: SessionTask, folder: Path) -> None:
         """Take over a scan in the authors' layout, and judge it."""

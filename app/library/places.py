@@ -8,7 +8,7 @@ from datetime import date
 from itertools import count
 from pathlib import Path
 
-from platformdirs import user_config_path, user_documents_path
+from platformdirs import user_cache_path, user_config_path, user_documents_path
 
 from core.errors import InputError
 from core.parameters import PRESET_NAMES
@@ -52,6 +52,11 @@ def slug(name: str) -> str:
 
 
 APPLICATION = "poursight"
+
+
+def cup_runs_folder() -> Path:
+    """Return the folder of runs of the cup that sessions share; it need not exist, and may be removed."""
+    return user_cache_path(APPLICATION, appauthor=False) / "cup-runs"
 
 
 def presets_folder() -> Path:

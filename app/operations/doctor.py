@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from app.library.places import cup_runs_folder
+from core.imagination.kept_runs import MOST_BYTES, KeptRuns
 from core.imagination.rendering.doctor import renderer_name
 from hardware.cell import read_cell
 from hardware.cell.examination import Finding, examine_cell
@@ -40,7 +42,7 @@ def examine(cell_file: Path | None) -> Iterator[Finding]:
     Raises:
         InputError: the cell file cannot be used.
     """
-    for check in (_python, _packages, _known_bad, _renderer, _disk):
+    for check in (_python, _packages, _known_bad, _renderer, _disk, _cup_runs):
         yield from check()
     if cell_file is not None:
         yield from examine_cell(read_cell(cell_file))
@@ -84,3 +86,10 @@ def _disk() -> list[Finding]:
         None if free > _FREE_DISK_BYTES else "Less than 2 GB are free here; free some space for sessions."
     )
     return [Finding("free disk", f"{free / 1e9:.1f} GB in {Path.cwd()}", problem)]
+
+
+def _cup_runs() -> list[Finding]:
+    kept = KeptRuns(cup_runs_folder())
+    n_runs, n_bytes = kept.size()
+    said = f"{n_runs}, {n_bytes / 1e6:.1f} of at most {MOST_BYTES / 1e6:.0f} MB in {kept.folder}"
+    return [Finding("cup runs kept", said)]

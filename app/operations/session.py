@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.library.places import cup_runs_folder
 from app.library.session_folder import preset_of, remember_parameters, remembered_parameters
 from core.parameters import Parameters
 from core.progress import Reporter
@@ -48,11 +49,14 @@ def working_on(
     Raises:
         SessionError: it cannot be opened, or another program works on it.
     """
+    from core.imagination.kept_runs import KeptRuns
     from core.pipeline.pipeline import Pipeline
 
     with (Session.open if is_existing else Session.create_or_open)(task.folder) as session:
         remember_parameters(session.path, task.preset, task.parameters)
-        yield Pipeline(session, task.parameters, pool, reporter, *preset_of(session.path, task.preset))
+        preset, base = preset_of(session.path, task.preset)
+        kept = KeptRuns(cup_runs_folder())
+        yield Pipeline(session, task.parameters, pool, reporter, preset, base, kept)
 
 
 def bring_report_up_to_date(session: Path, reporter: Reporter, workers: int | None = None) -> Path | None:

@@ -16,8 +16,10 @@ from core.imagination.body import BodyFile
 from core.imagination.bullet_world import CHECK_STEPS, BulletWorld
 from core.imagination.context import ImaginationContext
 from core.imagination.cup import pour_duration_s
+from core.imagination.cup_run import CupRun, PouringCup
+from core.imagination.cup_runs import STAGE, CupRuns
 from core.imagination.object_at_rest import ObjectAtRest, inside_aabb
-from core.imagination.packing import STAGE, CupRun, CupRuns, PouringCup, pack_cup
+from core.imagination.packing import pack_cup
 from core.imagination.recording import Recorder, Recording
 from core.imagination.results import Footprint, PourGrid
 from core.imagination.rotations import multiply_quaternions, quaternion_of, yaw_quaternion

@@ -14,7 +14,9 @@ from core.files import read_json, reading, write_json
 from core.formats.tables import Warnings
 from core.imagination.amount.reasoning import is_one_cup_asked_for
 from core.imagination.context import ImaginationContext
+from core.imagination.cup_runs import CupRuns
 from core.imagination.imagination import Imagination
+from core.imagination.kept_runs import KeptRuns
 from core.imagination.rendering.evidence import Evidence
 from core.mesh import TriangleMesh
 from core.motion.pour.cell import PourCell
@@ -76,6 +78,7 @@ class Pipeline:
         reporter: Reporter,
         preset: str = "default",
         base: Parameters | None = None,
+        kept: KeptRuns | None = None,
     ) -> None:
         """`preset` names what the parameters started from; the report shows the difference.
 
@@ -86,6 +89,7 @@ class Pipeline:
             reporter: shows progress.
             preset: its name or file.
             base: its parameters; none: they are read by its name.
+            kept: runs of the cup from earlier sessions; none: all are made anew.
         """
         self.session = session
         self.parameters = parameters
@@ -93,7 +97,7 @@ class Pipeline:
         self.pool = pool
         self._preset = preset
         self._base = base
-        self._tools = Tools(pool, self.reporter)
+        self._tools = Tools(pool, self.reporter, cup_runs=CupRuns(kept))
         self._known: dict[str, tuple[str, Any]] = {}
 
     def import_scan(self, folder: Path) -> Scan:

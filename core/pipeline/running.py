@@ -17,9 +17,9 @@ from core.imagination.amount.reasoning import plan_amount
 from core.imagination.amount.result import PlannedAmount
 from core.imagination.choice import choose_pour
 from core.imagination.context import BodyFiles, ImaginationContext, SpareTask
+from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
 from core.imagination.judgement import Judgement, judge
-from core.imagination.packing import CupRuns
 from core.imagination.pours import imagine_pours
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence

@@ -24,9 +24,9 @@ from core.imagination.amount.result import Amount, amount_sentence, parse_amount
 from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.context import ImaginationContext
+from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
 from core.imagination.imagination import WORKER_MODULE
-from core.imagination.packing import CupRuns
 from core.imagination.pours import imagine_pours
 from core.imagination.results import Drop, PourChoice
 from core.imagination.risk.tries import try_pours

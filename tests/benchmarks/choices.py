@@ -29,10 +29,10 @@ from core.evaluation.statistics import Figures
 from core.evaluation.trials import Trial
 from core.imagination.choice import choose_pour
 from core.imagination.context import ImaginationContext
+from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
 from core.imagination.imagination import WORKER_MODULE
 from core.imagination.judgement import capacity_share
-from core.imagination.packing import CupRuns
 from core.imagination.pours import imagine_pours
 from core.imagination.results import Footprint
 from core.mesh import TriangleMesh

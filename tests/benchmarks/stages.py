@@ -17,10 +17,10 @@ from typing import Any
 
 from core.collision import CollisionModel, read_collision_model
 from core.imagination.context import ImaginationContext
+from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
 from core.imagination.engine import bullet
 from core.imagination.imagination import WORKER_MODULE
-from core.imagination.packing import CupRuns
 from core.imagination.pours import (
     imagine_pours,
 )

@@ -23,8 +23,8 @@ from core.errors import Cancelled, PoursightError
 from core.evaluation.labels import Label
 from core.evaluation.trials import Trial
 from core.evaluation.variants import Variant
+from core.imagination.cup_runs import CupRuns
 from core.imagination.judgement import Judgement
-from core.imagination.packing import CupRuns
 from core.imagination.results import Containability, Drop, PourChoice, PourGrid
 from core.imagination.risk.tries import Tries
 from core.imagination.verdict import Verdict

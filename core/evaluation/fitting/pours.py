@@ -14,7 +14,8 @@ from core.evaluation.fitting.fitted import parameters_of_trial, start_values
 from core.evaluation.fitting.search import FitResult, FitStep, FitTrial, PartReporter, search
 from core.evaluation.fitting.spills import SpillMeasurement
 from core.imagination.context import ImaginationContext
-from core.imagination.packing import CupRuns, pack_cup
+from core.imagination.cup_runs import CupRuns
+from core.imagination.packing import pack_cup
 from core.imagination.pours import Pour, pivots_m, replay_task
 from core.imagination.results import Footprint
 from core.parameters import Parameters

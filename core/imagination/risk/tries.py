@@ -13,8 +13,8 @@ from core.files import read_json, write_json
 from core.geometry import BoolArray
 from core.imagination.choice import choose_pour, papers_order, surest_first
 from core.imagination.context import ImaginationContext
+from core.imagination.cup_runs import CupRuns
 from core.imagination.object_at_rest import ObjectAtRest
-from core.imagination.packing import CupRuns
 from core.imagination.pours import Pour, PouredCup, PourOutcome, in_turn_task
 from core.imagination.results import PourChoice, PourGrid
 from core.imagination.risk.drawing import draw_cups

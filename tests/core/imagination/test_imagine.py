@@ -6,7 +6,7 @@ import pytest
 from core.errors import StageError
 from core.imagination.body import body_files
 from core.imagination.cup import cup_parts
-from core.imagination.packing import packing_task
+from core.imagination.cup_run import packing_task
 from core.imagination.pours import Pour, full_task, replay_task
 from core.imagination.results import Drop, PourGrid
 from core.parameters import Parameters, apply_settings

@@ -66,6 +66,7 @@ class ScanJobs(QObject):
             return
         request = replace(request, cell_file=desk.cell.path)
         desk.scan_host.order(ScanWork.get_ready)
+        desk.session_host.order(SessionWork.compute_ahead, desk.workspace.parameters)
         self._start(
             self.tr("Scan"),
             ScanWork.scan,

@@ -1,0 +1,54 @@
+"""Computing while an arm scans what the imagination will need of the cup, whatever the object is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
+from typing import TYPE_CHECKING
+
+from app.library.places import cup_runs_folder
+from core.errors import PoursightError
+from core.imagination.kept_runs import KeptRuns
+from core.parameters import Parameters
+from core.progress import Reporter
+from core.workers import WorkerPool
+
+if TYPE_CHECKING:
+    from core.imagination.risk.ahead import CupRunsAhead
+
+
+def runs_ahead(parameters: Parameters, pool: WorkerPool, reporter: Reporter) -> CupRunsAhead:
+    """Return what makes the runs, and keeps them for all sessions.
+
+    Raises:
+        StageError: the cup cannot hold N_pour.
+    """
+    from core.imagination.context import ImaginationContext
+    from core.imagination.cup_runs import CupRuns
+    from core.imagination.risk.ahead import CupRunsAhead
+
+    runs = CupRuns(KeptRuns(cup_runs_folder()))
+    return CupRunsAhead(ImaginationContext(parameters, pool, reporter), runs)
+
+
+@contextmanager
+def computing_ahead(parameters: Parameters, pool: WorkerPool) -> Iterator[None]:
+    """Use a pool that would be idle inside the block; after it, it is idle again."""
+    ended = Event()
+
+    def compute() -> None:
+        try:
+            ahead = runs_ahead(parameters, pool, Reporter())
+            while not ended.is_set() and ahead.make_some():
+                pass
+        except PoursightError:
+            pass  # nobody asked for it; who does later is told
+
+    thread = Thread(target=compute, name="ahead of the pours", daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
