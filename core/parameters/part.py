@@ -29,10 +29,9 @@ def _part(group: G, names: frozenset[str], prefix: str) -> G:
         name = prefix + field
         if name in names:
             continue
-        if isinstance(value, Group):
-            if any(known.startswith(f"{name}.") for known in names):
-                part.__dict__[field] = _part(value, names, f"{name}.")
-                continue
+        if isinstance(value, Group) and any(known.startswith(f"{name}.") for known in names):
+            part.__dict__[field] = _part(value, names, f"{name}.")
+            continue
         # Deleted, not set to a default: a stage that reads what it does not declare shall fail, not lie.
         del part.__dict__[field]
     return part
