@@ -8,6 +8,7 @@ from statistics import fmean, pstdev
 import numpy as np
 
 from core.collision import CollisionModel
+from core.geometry import FloatArray
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.filling import Filling, FillPlan, filling_task, rain_places
 from core.imagination.capacity.result import Capacity
@@ -20,7 +21,7 @@ from core.imagination.capacity.stand_in import (
 )
 from core.imagination.context import ImaginationContext
 from core.imagination.object_at_rest import ObjectAtRest
-from core.imagination.particle_shape import particle_volume_m3
+from core.imagination.particle_shape import particle_extents_m, particle_volume_m3
 from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
@@ -67,7 +68,7 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
     half = _basin_task(surface, _HALF * parameters.particle.diameter_m, parameters)
     context.spare.append((half, for_half.append))
     fillings = _fill(context, target, plan)
-    if _is_mostly_heaped(fillings):
+    if _is_mostly_heaped(fillings) and context.run([_opening_task(surface, drop, parameters)], STAGE)[0]:
         smaller = _of_smaller_candies(plan, parameters)
         also = _fill(context, target, smaller)
         if _bulk_ml(smaller, also, basin) < _ARCHES * _bulk_ml(plan, fillings, basin):
@@ -94,6 +95,19 @@ def _fill(context: ImaginationContext, target: ObjectAtRest, plan: FillPlan) -> 
 def _is_mostly_heaped(fillings: tuple[Filling, ...]) -> bool:
     """Whether most of what stays lies above any rim: a heap on a floor, or an arch over an opening."""
     return sum(one.n_level for one in fillings) < _HEAPED * sum(one.n_kept for one in fillings)
+
+
+def _opening_task(surface: TriangleMesh, drop: Drop, parameters: Parameters) -> Task:
+    """Whether smaller candies could fall through below those that stayed."""
+    width_m = _SMALLER * float(particle_extents_m(parameters.particle).min())
+    places_m = drop.drop_positions_m[drop.retained, :2]
+    return Task(_has_opening_below, (surface, places_m, width_m, parameters.capacity.lattice_points), 1.0)
+
+
+def _has_opening_below(surface: TriangleMesh, places_m: FloatArray, width_m: float, points: int) -> bool:
+    from core.imagination.capacity.openings import has_opening_below  # loads numba: in the worker alone
+
+    return has_opening_below(surface, places_m, width_m, points)
 
 
 def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:

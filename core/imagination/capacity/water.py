@@ -17,7 +17,7 @@ from core.imagination.capacity.stand_in import NOWHERE, Surroundings
 from core.mesh import TriangleMesh
 from core.voxel_groups import large_groups
 
-_FLATNESS = 0.5
+FLATNESS = 0.5
 """Pitch along z relative to that across: a rim's height decides more than a wall's place."""
 _FINEST_M = 0.0005
 _MOUTH_LAYERS = 12
@@ -36,8 +36,8 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
         smallest_ml: of a hollow that counts.
         points: of the lattice, about; the result's error goes with its pitch.
     """
-    pitch = max((float(np.prod(mesh.extents_m)) / _FLATNESS / points) ** (1 / 3), _FINEST_M)
-    lattice = lattice_around(mesh, pitch, _FLATNESS * pitch, thickness_m)
+    pitch = lattice_pitch_m(mesh, points)
+    lattice = lattice_around(mesh, pitch, FLATNESS * pitch, thickness_m)
     layers = np.arange(lattice.shape[2])
     spill = spill_layers(lattice, np.zeros(lattice.shape, dtype=np.bool_))
     water = large_groups(spill > layers, smallest_ml / ML / lattice.cell_m3)
@@ -56,6 +56,12 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
         map_origin_m=lattice.origin_m[:2],
         map_pitch_m=pitch,
     )
+
+
+def lattice_pitch_m(mesh: TriangleMesh, points: int) -> float:
+    """Return the pitch across of a lattice of about so many points; along z it is `FLATNESS` of it."""
+    pitch: float = (float(np.prod(mesh.extents_m)) / FLATNESS / points) ** (1 / 3)
+    return max(pitch, _FINEST_M)
 
 
 def _candies(
@@ -92,7 +98,7 @@ def _beside(
     pitch = lattice.pitch_m.tolist()
     within = (away < _BESIDE * radius_m) & (lattice.heights_m < rims_m - 2 * pitch[2])
     held: BoolArray = touched & within
-    layers = round(1 / _FLATNESS)
+    layers = round(1 / FLATNESS)
     for axis in (0, 1, *(2,) * layers) * ceil((_BESIDE - 1) * radius_m / pitch[0]):
         joined = ~np.moveaxis(lattice.parted[axis], axis, 0)[:-1]
         line, room = np.moveaxis(held, axis, 0), np.moveaxis(within, axis, 0)

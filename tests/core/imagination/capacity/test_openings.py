@@ -1,0 +1,46 @@
+"""Openings below a heap: a closed floor has none, and the outside of an object is none."""
+
+import numpy as np
+import pytest
+
+from core.imagination.capacity.openings import has_opening_below
+from core.mesh import TriangleMesh
+from tests.core.imagination.capacity.conftest import open_box, turned
+
+WIDTH_M = 0.0049
+"""The least thickness of a candy that is 0.7 times as large."""
+POINTS = 400_000
+
+
+def ring_of_places(radius_m, n=24, center_m=(0.0, 0.0)):
+    angles = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    return np.asarray(center_m) + radius_m * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def funnel(hole_m):
+    low, high = hole_m / 2, 0.06
+    return turned([(low, 0), (high, 0.06), (high + 0.003, 0.06), (low + 0.003, 0), (low, 0)])
+
+
+@pytest.mark.parametrize(("hole_m", "is_open"), [(0.02, True), (0.008, True), (0.003, False)])
+def test_a_funnel_has_one_if_its_hole_is_wide_enough(hole_m, is_open):
+    found = has_opening_below(funnel(hole_m), ring_of_places(0.03), WIDTH_M, POINTS)
+    assert found == is_open
+
+
+@pytest.mark.parametrize("notch_m", [None, (0.05, 0.04)])
+def test_a_closed_floor_has_none_and_what_lies_beside_it_is_none(notch_m):
+    tray = open_box((0.08, 0.05, 0.04), 0.002, notch_m)
+    assert not has_opening_below(tray, tray.vertices_m[:, :2], WIDTH_M, POINTS)
+
+
+def test_a_frame_with_a_gap_in_it_has_one():
+    ring = turned([(0.04, 0), (0.05, 0), (0.05, 0.01), (0.04, 0.01), (0.04, 0)])
+    middles = ring.vertices_m[ring.faces].mean(axis=1)
+    with_gap = TriangleMesh(ring.vertices_m, ring.faces[np.abs(middles[:, 1]) + (middles[:, 0] < 0) > 0.008])
+    for mesh in (ring, with_gap):
+        assert has_opening_below(mesh, ring_of_places(0.045), WIDTH_M, POINTS)
+
+
+def test_too_few_places_to_be_between_leave_it_open():
+    assert has_opening_below(funnel(0.02), np.array([[0.03, 0.0]]), WIDTH_M, POINTS)
