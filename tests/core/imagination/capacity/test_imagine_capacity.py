@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from core.collision import CollisionModel
-from core.imagination.capacity.imagine import imagine_capacity
+from core.imagination.capacity.imagine import ARCH, imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.drop import imagine_drop
 from core.workers import RunHere
 from tests.core.imagination.capacity.conftest import open_box
+from tests.core.imagination.capacity.test_openings import funnel
 from tests.core.imagination.here import here
 
 
@@ -83,3 +84,10 @@ def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few)
     said = "Candies of 7 mm would fall through its openings."
     assert said in fill(slit, candies, few, RunHere()).explanation
     assert said not in fill(whole, candies, few, RunHere()).explanation
+
+
+@pytest.mark.system
+def test_candies_that_only_arch_over_an_opening_are_not_held(candies, few):
+    arched = fill(CollisionModel.exact(funnel(0.022)), candies, few, RunHere())
+    assert arched.explanation == ARCH
+    assert arched.n_candies == 0
