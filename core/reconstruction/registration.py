@@ -11,7 +11,9 @@ whose walls are thicker as long as the poses err.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numba
@@ -210,12 +212,21 @@ def compare_views(
     """
     n_views = len(poses)
     points, normals = _in_base(surfaces, poses)
-    pairs, vector = np.zeros((n_views, n_views, 6, 6)), np.zeros((n_views, 6))
+    pairs, pulls = np.zeros((n_views, n_views, 6, 6)), np.zeros((n_views, n_views, 6))
     square_m2, n_matches = np.zeros(n_views), np.zeros(n_views)
-    _match(
-        surfaces.planes, points, normals, surfaces.view, surfaces.camera, poses, center_m, reach_m,
-        pairs, vector, square_m2, n_matches,
-    )  # fmt: skip
+
+    def match(of_view: slice) -> None:
+        _match(
+            surfaces.planes, points[of_view], normals[of_view], surfaces.view[of_view], surfaces.camera,
+            poses, center_m, reach_m, pairs, pulls, square_m2, n_matches,
+        )  # fmt: skip
+
+    # Each view writes rows of its own, so that the result does not depend on the number of threads.
+    starts = np.searchsorted(surfaces.view, np.arange(n_views + 1))
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:
+        list(threads.map(match, map(slice, starts[:-1].tolist(), starts[1:].tolist())))
+    pairs += np.tril(pairs, -1).swapaxes(2, 3)
+    vector = pulls.sum(axis=0) - pulls.sum(axis=1)
     matrix = np.zeros((n_views, 6, n_views, 6))
     for i in range(n_views):
         for j in range(n_views):
@@ -243,11 +254,11 @@ def _match(
     center: npt.NDArray[np.float64],
     reach_m: float,
     pairs: npt.NDArray[np.float64],
-    vector: npt.NDArray[np.float64],
+    pulls: npt.NDArray[np.float64],
     square_m2: npt.NDArray[np.float64],
     n_matches: npt.NDArray[np.float64],
 ) -> None:
-    """Add every point against the plane it meets in every other view."""
+    """Add every point against the plane it meets in every other view; of `pairs` the lower triangles."""
     step = np.empty(6)
     found = np.empty(4)
     for index in range(len(points)):
@@ -268,9 +279,8 @@ def _match(
             step[3:] = found[:3]
             weight = (1.0 - (found[3] / reach_m) ** 2) ** 2
             for a in range(6):
-                vector[own, a] -= weight * step[a] * found[3]
-                vector[other, a] += weight * step[a] * found[3]
-                for b in range(6):
+                pulls[own, other, a] += weight * step[a] * found[3]
+                for b in range(a + 1):
                     pairs[own, other, a, b] += weight * step[a] * step[b]
             square_m2[own] += found[3] ** 2
             n_matches[own] += 1.0
