@@ -48,8 +48,9 @@ class SessionWork(Service):
         """Start the workers, and import what the first stage needs."""
         from core.imagination.imagination import WORKER_MODULE
         from core.pipeline import pipeline  # noqa: F401 - takes a second, so not in the first job
+        from core.pipeline.jobs import JOBS_MODULE
 
-        self._pool.start(WORKER_MODULE)
+        self._pool.start(WORKER_MODULE, JOBS_MODULE)
 
     def close(self) -> None:
         """End the workers."""

@@ -34,8 +34,11 @@ def runs_ahead(parameters: Parameters, pool: WorkerPool, reporter: Reporter) -> 
 
 @contextmanager
 def computing_ahead(parameters: Parameters, pool: WorkerPool) -> Iterator[None]:
-    """Use a pool that would be idle inside the block; after it, it is idle again."""
+    """Use a pool that is idle inside the block; after it, it is idle again, and ready to reconstruct."""
+    from core.pipeline.jobs import JOBS_MODULE
+
     ended = Event()
+    pool.start(JOBS_MODULE)
 
     def compute() -> None:
         try:

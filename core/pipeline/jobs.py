@@ -17,6 +17,9 @@ from core.scan import crop_box_of, stored_scan
 from core.unseen_readings import UnseenReadings
 from core.workers import WorkerReporter
 
+JOBS_MODULE = __name__
+"""For pools that will reconstruct: its import takes a worker a second."""
+
 
 def reconstruction_job(
     scan_folder: Path, parameters: ReconstructionParameters
