@@ -51,8 +51,8 @@ class CupRunsAhead:
 
 
 def _tries_without_a_spill(parameters: Parameters) -> int:
-    """After so many clean tries of a pour there are no more."""
+    """After so many clean tries of a pour, besides the planned one, there are no more."""
     settings = parameters.risk
     n_tries = np.arange(settings.n_tries + 1)
-    is_sure = lower_bound(n_tries, n_tries) >= settings.sure
+    is_sure = lower_bound(n_tries + 1, n_tries + 1) >= settings.sure
     return int(is_sure.argmax()) if is_sure.any() else settings.n_tries
