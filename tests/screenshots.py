@@ -53,8 +53,6 @@ _QUICK_FIT = {
     "containability.contact.rolling_friction": 0.3,  # candies stick where they fall, until it is fitted
     "containability.contact.lateral_friction": 0.6,
 }
-_COLORS = 200
-"""Enough for a screenshot; a third of the bytes."""
 _SETTLING_S = 1.2
 
 
@@ -182,8 +180,8 @@ def _keep(walk: Walk, path: Path) -> None:
     let_work(_SETTLING_S)
     walk.window.grab().save(str(path))
     with Image.open(path) as picture:
-        small = picture.convert("RGB").quantize(_COLORS, dither=Image.Dither.NONE)
-    small.save(path, optimize=True)
+        opaque = picture.convert("RGB")
+    opaque.save(path, optimize=True)
     print(path.name, flush=True)
 
 

@@ -16,6 +16,7 @@ from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.page import SidePanel, SplitView
 from app.gui.pages.pours.choice import ChoiceBox, SelectedBox
 from app.gui.pages.pours.comparison import CompareBox, OtherPours, VariantRun, load_grid
+from app.gui.pages.pours.how_much import HowMuchBox
 from app.gui.pages.pours.pour_scene import PourScene
 from app.gui.pages.pours.results import PoursKey, ShownPours, load_pours
 from app.gui.remedies import worded
@@ -25,6 +26,7 @@ from app.jobs.session_work import SessionWork
 from app.operations.choosing import choose_pour
 from core.errors import PoursightError
 from core.imagination.results import PourGrid
+from core.parameters import Parameters
 from core.session.operator_choice import withdraw_operator_choice
 
 _MAP_PX = 400
@@ -54,10 +56,12 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         self._selected = SelectedBox()
         self._scene = PourScene()
         self._choice = ChoiceBox()
+        self._how_much = HowMuchBox()
         self._compare = CompareBox()
         self._variant = VariantRun(desk, self.KEY, self)
         self._side = SidePanel(self.tr("Review motion"))
         self._side.body.addWidget(self._choice)
+        self._side.body.addWidget(self._how_much)
         self._side.body.addWidget(self._compare)
         self._side.body.addStretch(1)
         column = QVBoxLayout(self)
@@ -93,6 +97,8 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         self._scene.picked.connect(self.select)
         self._scene.rotated.connect(self._map.set_rotation)
         self._selected.check_wanted.connect(self._check)
+        self._how_much.asked.connect(self._ask_for)
+        self._how_much.fewer_asked.connect(self._pour_fewer)
         self._choice.chosen.connect(self._choose)
         self._choice.withdrawn.connect(self._withdraw)
         self._compare.compared.connect(self._compare_with)
@@ -170,6 +176,10 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         self._selected.show_pour(self.content, selection, is_idle and is_fresh and has_cell)
         self._choice.set_selection(selection, is_idle and is_fresh)
         self._compare.set_can_imagine(is_idle and is_fresh)
+        self._how_much.setVisible(self.content is not None and self.content.grid is not None)
+        risk = self.content.risk if self.content is not None and is_fresh else None
+        fewer = None if risk is None else risk.fewer
+        self._how_much.show_amount(self.desk.workspace.parameters, fewer, is_idle)
         text, is_enabled, _go = self._next_step()
         self._choice.stale.look(self.desk.workspace, text)
         self._side.primary.setText(text)
@@ -193,6 +203,13 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
     def _imagine(self) -> None:
         host, task = self.desk.session_host, self.desk.workspace.task()
         self.desk.jobs.start(self.tr("Imagine"), self.KEY, host, SessionWork.imagine, task)
+
+    def _ask_for(self, parameters: Parameters) -> None:
+        self.desk.workspace.edit(parameters, self.tr("amount"))
+
+    def _pour_fewer(self, parameters: Parameters) -> None:
+        self._ask_for(parameters)
+        self._imagine()
 
     def _check(self) -> None:
         settings = self.desk.cell.settings

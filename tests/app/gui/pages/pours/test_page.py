@@ -1,10 +1,14 @@
 """The Pours page on real sessions."""
 
+import dataclasses
+
 import pytest
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLabel, QPushButton
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLabel, QPushButton, QSpinBox
 
 from app.gui.pages.pours.page import PoursPage
 from app.gui.views.pour_map import PourMap
+from core.imagination.risk.result import FewerCandies
 from core.parameters import apply_settings
 from core.session import Session
 from core.session.operator_choice import read_operator_choice
@@ -186,3 +190,43 @@ def test_no_container_leads_to_the_imagination(page, block_session, qtbot):
     with qtbot.waitSignal(page.desk.page_wanted) as wanted:
         button(page, "primary").click()
     assert wanted.args == ["imagination"]
+
+
+def test_how_much_is_asked_for_where_the_pours_are_and_can_be_undone(page, mug_session, qtbot):
+    opened(page, mug_session, qtbot)
+    workspace = page.desk.workspace
+    before = workspace.parameters
+    kind, number = page.findChild(QComboBox, "amount_kind"), page.findChild(QSpinBox, "amount_number")
+    assert (kind.currentData(), number.value()) == (before.pouring.amount, before.pouring.n_pour)
+    assert not button(page, "pour_fewer").isVisibleTo(page)
+    number.setFocus()
+    number.selectAll()
+    qtbot.keyClicks(number, "25")
+    assert workspace.parameters == before, "a number half typed is not asked for"
+    qtbot.keyClick(number, Qt.Key.Key_Return)
+    assert workspace.parameters.pouring.n_pour == 25
+    kind.setCurrentIndex(kind.findData("half"))
+    kind.activated.emit(kind.currentIndex())
+    assert workspace.parameters.pouring.amount == "half"
+    assert not number.isVisibleTo(page)
+    qtbot.waitUntil(lambda: button(page, "primary").text() == "Imagine")
+    workspace.undo_stack.undo()
+    workspace.undo_stack.undo()
+    assert workspace.parameters == before
+    qtbot.waitUntil(lambda: kind.currentData() == before.pouring.amount)
+    assert number.value() == before.pouring.n_pour
+
+
+def test_a_smaller_amount_that_is_sure_enough_is_one_click_away(page, mug_session, qtbot):
+    opened(page, mug_session, qtbot)
+    fewer = FewerCandies(17, 3, 0, 12, 12)
+    risk = dataclasses.replace(page.content.risk, fewer=fewer)
+    page.content = dataclasses.replace(page.content, imagined_risk=risk, motions=None)
+    page.update_actions()
+    less = button(page, "pour_fewer")
+    assert less.isVisibleTo(page) and less.text() == "Pour 17 instead"
+    with qtbot.waitSignal(page.desk.jobs.started):
+        qtbot.mouseClick(less, Qt.MouseButton.LeftButton)
+    assert page.desk.workspace.parameters.pouring.n_pour == 17
+    page.desk.jobs.cancel()
+    qtbot.waitUntil(lambda: page.desk.jobs.is_idle, timeout=20_000)
