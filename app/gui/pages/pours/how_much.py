@@ -48,6 +48,7 @@ class HowMuchBox(QWidget):
         self._number.setRange(int(facts.low or 1), int(facts.high or 1))
         self._number.setSuffix(self.tr(" candies"))
         self._number.setKeyboardTracking(False)  # a number half typed is not asked for
+        self._number.setMinimumHeight(self._kind.sizeHint().height())
         self._number.valueChanged.connect(lambda _value: self._ask())
         self._less = QPushButton()
         self._less.setObjectName("pour_fewer")
