@@ -11,10 +11,13 @@ import pytest
 from core.resources import RESOURCES
 from core.session.cups import next_cup
 from core.session.pour_runs import PourRun
+from hardware.cell import read_cell
 from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.app.cli.at_a_terminal import TerminalSession
 from tests.app.cli.commanding import command
 from tests.app.cli.test_scan_command import QUICK, SIMULATED
 from tests.app.sessions import copied, made_once
+from tests.patience import HANG_S, wait_until
 
 pytestmark = pytest.mark.system
 
@@ -72,6 +75,15 @@ def real_cell(tmp_path, address, *changes):
     return path
 
 
+ANSWERS = {
+    "Let the program": "y",
+    "Is the cup in the hand": "y",
+    "Back off along": "y",
+    "Let the UR5": "y",
+    "How many candies were spilled": "0",
+    "Remarks?": "",
+}
+"""By words of the questions."""
 MOST_BEGINNINGS = 3
 LOST = "The control program on the robot was stopped or paused"
 
@@ -259,3 +271,30 @@ def test_another_arm_than_the_cell_file_says(refused, planned_session, tmp_path)
 
 def test_the_example_of_a_real_cell_names_its_station():
     assert "cup_station_m = [-0.50, 0.10, 0.015]" in (RESOURCES / "cells" / "ur5_example.toml").read_text()
+
+
+def test_a_killed_programs_cup_is_brought_home_by_the_next_one_which_pours(planned_session, tmp_path):
+    session = planned_session
+    home_rad = read_cell(SIMULATED).robot.home_rad
+    with ControllerProcess("UR5", "3.15", joints_rad=home_rad, speed_up=3.0) as controller:
+        cell = real_cell(tmp_path, controller.address, ('kind = "simulated"', 'kind = "ur5"'))
+        command("plan", session, "--cell", cell)
+        events = session / "pours" / "0001" / "events.jsonl"
+        killed = TerminalSession("pour", session, "--cell", cell, "--anyway")
+        thread = threading.Thread(target=killed.answer, args=(ANSWERS, HANG_S), daemon=True)
+        thread.start()
+        wait_until(lambda: killed.has_ended or (events.is_file() and '"carry"' in events.read_text()))
+        assert not killed.has_ended, killed.transcript
+        killed.process.kill()
+        thread.join(HANG_S)
+
+        again = TerminalSession("pour", session, "--cell", cell, "--anyway")
+        assert again.answer(ANSWERS, HANG_S) == 0, again.transcript
+        joints_rad = json.loads(controller.command("state"))["joints_rad"]
+    assert "The gripper is closed. The arm is on the path of run 0001" in again.transcript
+    assert "Back off along the checked path" in again.transcript
+    assert "The arm is home. Make sure that the cup is at its station and filled." in again.transcript
+    runs = [PourRun.load(session / "pours" / f"{number:04d}") for number in (1, 2, 3)]
+    assert [run.is_done for run in runs] == [False, True, True]
+    assert runs[2].outcome is not None and runs[2].outcome.n_spilled == 0
+    assert joints_rad == pytest.approx(home_rad, abs=0.002)

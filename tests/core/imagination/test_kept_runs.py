@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-import signal
 import subprocess
 import sys
-import time
+from contextlib import contextmanager
 from dataclasses import fields
 
 import numpy as np
@@ -22,6 +21,7 @@ from core.imagination.set_up import as_planned
 from core.parameters import apply_settings
 from core.progress import Reporter
 from core.workers import RunHere
+from tests.patience import wait_until
 
 
 class CountingRunner(RunHere):
@@ -140,22 +140,27 @@ while True:
 """
 
 
+@contextmanager
+def writing_program(folder):
+    """A program that writes the same runs again and again, until it is killed."""
+    writer = subprocess.Popen([sys.executable, "-c", WRITER, str(folder)], stdout=subprocess.PIPE, text=True)
+    try:
+        assert writer.stdout.readline() == "ready\n"
+        yield
+    finally:
+        writer.kill()
+        writer.wait()
+        writer.stdout.close()
+
+
 def test_programs_that_share_the_folder_and_are_killed_leave_whole_runs(tmp_path):
     kept = KeptRuns(tmp_path)
     for _ in range(3):
-        writers = [
-            subprocess.Popen([sys.executable, "-c", WRITER, str(tmp_path)], stdout=subprocess.PIPE, text=True)
-            for _ in range(2)
-        ]
-        for writer in writers:
-            assert writer.stdout.readline() == "ready\n"
-        while kept.size()[0] < 5:
-            time.sleep(0.01)
-        for _ in range(50):
-            for number in range(5):
-                found = kept.fetch(str(number))
-                assert found is not None and found.poses.tobytes() == a_run(number, 400).poses.tobytes()
-        for writer in writers:
-            writer.send_signal(signal.SIGKILL)
-            writer.wait()
+        with writing_program(tmp_path), writing_program(tmp_path):
+            wait_until(lambda: kept.size()[0] == 5)
+            for _ in range(50):
+                for number in range(5):
+                    found = kept.fetch(str(number))
+                    assert found is not None
+                    assert found.poses.tobytes() == a_run(number, 400).poses.tobytes()
         assert all(kept.fetch(str(number)) is not None for number in range(5))
