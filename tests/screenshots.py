@@ -19,6 +19,7 @@ from app.gui.main import make_application, open_window
 from app.gui.pages.page import PRIMARY
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.pages.tuning.page import TuningPage
+from app.gui.pages.welcome.pictures import FOLDER, PIXEL_RATIO, SIZE_PX
 from app.library.places import SESSIONS_VARIABLE
 from app.operations.calibration.cell_file import CELLS_VARIABLE, known_cells, new_cell
 from app.operations.calibration.check import check_cell
@@ -53,6 +54,13 @@ _QUICK_FIT = {
     "containability.contact.rolling_friction": 0.3,  # candies stick where they fall, until it is fitted
     "containability.contact.lateral_friction": 0.6,
 }
+_STEP_BOXES = {
+    "scan": (250, 130, 730, 490),
+    "reconstruction": (176, 182, 868, 701),
+    "imagination": (330, 240, 730, 540),
+    "pours": (490, 195, 890, 495),
+}
+"""Of the 3D view on each page, in the smaller window's pixels."""
 _SETTLING_S = 1.2
 
 
@@ -74,6 +82,7 @@ def main() -> None:
         for theme in THEMES:
             for size in SIZES:
                 _picture(target, library, theme, size)
+            _crop_steps(target, theme)
 
 
 def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> None:
@@ -100,6 +109,17 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
             _keep(walk, target / f"{name}-{key}-{theme}-{size[0]}.png")
         window.desk.workspace.close()
     window.close_without_asking()
+
+
+def _crop_steps(target: Path, theme: str) -> None:
+    """The pictures of the first page, cut out of those of the other pages."""
+    width, height = (PIXEL_RATIO * edge for edge in SIZE_PX)
+    FOLDER.mkdir(exist_ok=True)
+    for step, box in _STEP_BOXES.items():
+        with Image.open(target / f"mug-{step}-{theme}-{SIZES[0][0]}.png") as picture:
+            picture.resize((width, height), Image.Resampling.LANCZOS, box).save(
+                FOLDER / f"{step}-{theme}.png", optimize=True
+            )
 
 
 def _make_cell() -> None:

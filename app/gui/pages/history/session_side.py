@@ -176,7 +176,7 @@ class SessionPart(QWidget):
             self._facts[key] = value
         return self._form
 
-    def _build_exports(self) -> QHBoxLayout:
+    def _build_exports(self) -> QVBoxLayout:
         texts = {
             "html": (self.tr("HTML…"), self.tr("The report as one file for a browser")),
             "pdf": (self.tr("PDF…"), self.tr("The report for paper, A4")),
@@ -191,7 +191,12 @@ class SessionPart(QWidget):
             button = _button(f"export_{kind.key}", *texts[kind.key])
             button.clicked.connect(lambda _=False, wanted=kind: self.export_wanted.emit(wanted))
             self._exports[kind] = button
-        return row_of(*self._exports.values())
+        rows = QVBoxLayout()
+        rows.setSpacing(GRID_PX)
+        for are_models in (False, True):
+            kinds = [kind for kind in KINDS if (kind.method is LibraryWork.export_model) == are_models]
+            rows.addLayout(row_of(*(self._exports[kind] for kind in kinds)))
+        return rows
 
     def _build_keeping(self) -> QHBoxLayout:
         show = _button("show_folder", self.tr("Show folder"))

@@ -9,6 +9,7 @@ from typing_extensions import override
 from app.gui.desk.desk import Desk
 from app.gui.desk.memory import Memory
 from app.gui.pages.page import PRIMARY, Page
+from app.gui.pages.welcome.pictures import StepPictures
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import heading, text_label
 from app.library.index import Library
@@ -44,6 +45,7 @@ class WelcomePage(Page):
         column.setSpacing(2 * GRID_PX)
         column.addStretch(1)
         column.addWidget(self._heading())
+        column.addWidget(StepPictures())
         column.addWidget(self._mug())
         column.addLayout(self._last)
         column.addLayout(self._own())

@@ -14,11 +14,12 @@ from PySide6.QtWidgets import QInputDialog, QLabel, QMenu, QMessageBox, QPushBut
 from app.gui.desk.memory import Memory
 from app.gui.pages.page import SplitView
 from app.gui.pages.registry import OTHERS, WORK
+from app.gui.pages.welcome.pictures import FOLDER, STEPS
 from app.gui.shell.frame import Chip, Tab
 from app.gui.shell.job_bar import MessageBar
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
-from app.gui.theme import DARK, LIGHT, apply_theme, theme_of
+from app.gui.theme import DARK, LIGHT, THEMES, apply_theme, theme_of
 from app.jobs.arm_events import ArmStatus
 from app.jobs.messages import FailureKind
 from app.jobs.session_work import SessionWork
@@ -40,6 +41,15 @@ def test_the_first_page_says_what_to_do_and_nothing_is_open(window):
     assert window.findChild(Chip, "cell_chip").text == "SIMULATED"
     assert _button(window, "stop").isVisible()
     assert _button(window, "next").isHidden()
+    row = window.findChild(QWidget, "step_pictures")
+    for picture in (label for label in row.findChildren(QLabel) if label.accessibleName()):
+        shown = picture.pixmap().deviceIndependentSize().toSize()
+        assert shown == picture.size() and row.rect().contains(picture.geometry())
+
+
+@pytest.mark.parametrize("theme", THEMES)
+def test_there_is_a_picture_of_each_step_in_each_theme(theme):
+    assert all((FOLDER / f"{step}-{theme}.png").is_file() for step in STEPS)
 
 
 def test_tabs_show_the_state_of_the_session_and_the_bar_what_comes_next(window, mug_session, qtbot):

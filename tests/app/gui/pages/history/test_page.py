@@ -11,6 +11,7 @@ from PySide6.QtWidgets import (
     QLineEdit,
     QPushButton,
     QTableWidget,
+    QWidget,
 )
 
 from app.gui.pages.history.session_side import KINDS
@@ -285,3 +286,10 @@ def test_a_session_is_renamed(library, make_page, desk, qtbot, is_open):
     assert Session.open(library / "mug").name == "blue mug"
     if is_open:
         assert desk.workspace.session_name == "blue mug"
+
+
+def test_nothing_in_the_side_panel_is_wider_than_it_is_in_a_small_window(library, make_page):
+    page = make_page()
+    page.resize(1144, 650)
+    inside = page.findChild(QWidget, "side_body")
+    assert inside.minimumSizeHint().width() <= inside.parentWidget().width()
