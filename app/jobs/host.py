@@ -188,7 +188,7 @@ class _Server:
             os.nice(_NICENESS)  # of this thread and of what it starts; the listening one stays quick
         self._service.prepare()
         while True:
-            with suppress(PoursightError):  # nobody asked for it; the job that needs it will be told
+            with suppress(Exception):  # whatever it is: the job that needs it will be told
                 while self._jobs.empty() and self._service.use_idle_time(self._idle):
                     pass
             job = self._jobs.get()

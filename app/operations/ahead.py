@@ -37,12 +37,12 @@ def computing_ahead(parameters: Parameters, pool: WorkerPool) -> Iterator[None]:
     """Use a pool that is idle inside the block; after it, it is idle again, and ready to reconstruct."""
     from core.pipeline.jobs import JOBS_MODULE
 
-    ended = Event()
+    ended, reporter = Event(), Reporter()
     pool.start(JOBS_MODULE)
 
     def compute() -> None:
         try:
-            ahead = runs_ahead(parameters, pool, Reporter())
+            ahead = runs_ahead(parameters, pool, reporter)
             while not ended.is_set() and ahead.make_some():
                 pass
         except PoursightError:
@@ -52,6 +52,9 @@ def computing_ahead(parameters: Parameters, pool: WorkerPool) -> Iterator[None]:
     thread.start()
     try:
         yield
+    except BaseException:
+        reporter.cancel()  # whoever stopped the scan does not wait for a run of the cup
+        raise
     finally:
         ended.set()
         thread.join()

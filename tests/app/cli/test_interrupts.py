@@ -14,6 +14,14 @@ from core.errors import Cancelled
 from tests.patience import HANG_S, wait_until
 
 
+@pytest.fixture(autouse=True)
+def _as_on_a_terminal():
+    """A shell lets what it starts in the background ignore Ctrl-C."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 def send(number):
     os.kill(os.getpid(), number)
 
