@@ -11,9 +11,10 @@ from __future__ import annotations
 import os
 import signal
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from threading import Event, Thread
+from threading import Event, Lock, Thread
 from typing import NoReturn
 
 import numpy as np
@@ -98,6 +99,7 @@ class _Worker:
 
     def __init__(self, setup: Setup, connection: Connection, mailbox: StateMailbox, pulse: Pulse) -> None:
         self._connection = connection
+        self._sending = Lock()
         self._mailbox = mailbox
         self._cycle_s = setup.cycle_s
         self._payload_center_m = setup.payload_center_m
@@ -138,8 +140,6 @@ class _Worker:
                 self._due_s = time.monotonic() + _HEARD_S
             if is_fresh and self._motion is not None:
                 self._step(self._motion)
-            elif is_fresh and not self._is_over:
-                self._watch_rest()
             self._kick()
 
     def _listen_for_program(self) -> None:
@@ -159,7 +159,7 @@ class _Worker:
         motion, self._motion = self._motion, None
         if motion is not None:
             self._brake(motion)
-            self._connection.send(Ended(RobotStopped(self._refusal), motion.progress))
+            self._send(Ended(RobotStopped(self._refusal), motion.progress))
 
     def _set_up(self, setup: Setup) -> None:
         """Set tool and payload, and read them back: what the controller takes for granted must be ours."""
@@ -206,7 +206,7 @@ class _Worker:
             error = refused
         except RuntimeError as failed:
             error = MoveRefused(f"The controller did not take it ({failed}); recover the robot.")
-        self._connection.send(Reply(request.number, error))
+        self._send(Reply(request.number, error))
 
     def _ask_move_joints(self, path_rad: FloatArray, speed_rad_s: float, acceleration_rad_s2: float) -> None:
         self._begin(JointMoves(self._control, path_rad, speed_rad_s, acceleration_rad_s2))
@@ -232,12 +232,12 @@ class _Worker:
     def _stop(self, request: Request) -> None:
         """Stop for good: only a new worker moves again, so no request in flight can begin a move later."""
         self._is_over = True
-        self._connection.send(Reply(request.number, None))
+        self._send(Reply(request.number, None))
         motion, self._motion = self._motion, None
         if motion is not None:
             self._brake(motion)
             stopped = RobotStopped("The arm was stopped before it arrived; plan its motion anew.")
-            self._connection.send(Ended(stopped, motion.progress))
+            self._send(Ended(stopped, motion.progress))
         if request.name == "end":
             self._control.stopScript()
             os._exit(0)
@@ -266,12 +266,14 @@ class _Worker:
                 error = unsafe(self._latest) or error
             else:
                 self._brake(motion)
-                error = self._reason(error)
-        self._connection.send(Ended(error, motion.progress))
+                error = self._reason(error, self._kick)
+        self._send(Ended(error, motion.progress))
 
-    def _watch_rest(self) -> None:
-        """Between two motions nothing moves, and the control program is ours: it runs without a break."""
-        raw = self._latest
+    def _watch_rest(self, raw: AnyArray) -> None:
+        """Between two motions nothing moves, and the control program is ours: it runs without a break.
+
+        The thread that reads watches: the other one may wait for a program that another one has replaced.
+        """
         if self._rest_rad is None and np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S:
             self._rest_rad = raw["joints_rad"]
         error = deviation(raw)
@@ -279,7 +281,10 @@ class _Worker:
             error = moved_at_rest(raw["joints_rad"], self._rest_rad)
         if error is not None:
             self._is_over = True
-            self._connection.send(Ended(self._reason(error), 0.0))
+            Thread(target=self._report_rest, args=(error,), daemon=True).start()
+
+    def _report_rest(self, error: RobotError) -> None:
+        self._send(Ended(self._reason(error), 0.0))
 
     def _watch_outputs(self) -> None:
         """What we switched ourselves is watched from the state on that shows it.
@@ -301,7 +306,7 @@ class _Worker:
         with suppress(RuntimeError):
             motion.stop(float(np.clip(fastest_rad_s / _BRAKE_WITHIN_S, *_BRAKE_LIMITS_RAD_S2)))
 
-    def _reason(self, error: RobotError) -> RobotError:
+    def _reason(self, error: RobotError, meanwhile: Callable[[], None] = lambda: None) -> RobotError:
         """The gravest thing to be seen just after something went wrong."""
         deadline_s = time.monotonic() + _REASON_S
         while time.monotonic() < deadline_s:
@@ -311,7 +316,7 @@ class _Worker:
             also = deviation(self._latest)
             if isinstance(also, ProgramStopped):
                 error = also
-            self._kick()
+            meanwhile()
             time.sleep(_IDLE_S)
         return error
 
@@ -321,6 +326,10 @@ class _Worker:
         if now_s - self._kicked_s > _KICK_S and int(self._latest["runtime_state"]) == RUNTIME_PLAYING:
             self._kicked_s = now_s
             self._control.kickWatchdog()
+
+    def _send(self, message: Reply | Ended) -> None:
+        with self._sending:
+            self._connection.send(message)
 
     def _publish(self) -> None:
         """Pass every state on; when there are none any more, their age shows it to the parent."""
@@ -334,6 +343,8 @@ class _Worker:
             raw["due_s"] = self._due_s
             self._latest = raw
             self._mailbox.write(raw)
+            if self._motion is None and not self._is_over:
+                self._watch_rest(raw)
             self._fresh.set()
 
     def _read(self) -> AnyArray:
