@@ -11,23 +11,13 @@ import numpy as np
 from app.cli.operators import PrintingOperator, TerminalOperator
 from app.cli.options import given_path
 from app.cli.terminal import TerminalReporter
-from app.operations.calibration import cell_file, hand_eye, steps, undoing
+from app.operations.calibration import cell_file, hand_eye, step_names, steps, undoing
 from app.operations.calibration import check as checking
 from app.operations.calibration import devices as devices_of_cell
 from app.operations.calibration import reference as referring
 from app.operations.calibration import table as measuring
 from app.operations.calibration import views as choosing_views
 from app.operations.calibration.capture import CaptureObserver
-from app.operations.calibration.provenance import (
-    ARM,
-    BOARD,
-    CAMERA,
-    CHECK,
-    HAND_EYE,
-    REFERENCE,
-    TABLE,
-    VIEWS_STEP,
-)
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.errors import Cancelled, InputError
@@ -35,12 +25,12 @@ from hardware.cell import read_cell
 
 MM = 1000.0
 _UNDONE = {
-    BOARD: "The board that was entered last is forgotten; see: poursight cell show {file}",
-    HAND_EYE: "The hand-eye pose in {file} is as it was before the calibration.",
-    CHECK: "The last check counts no more.",
-    TABLE: "Platform, crop box and table in {file} are where they were before.",
-    VIEWS_STEP: "The views in {file} are those from before.",
-    REFERENCE: "The reference view is removed; scans begin without it.",
+    step_names.BOARD: "The board that was entered last is forgotten; see: poursight cell show {file}",
+    step_names.HAND_EYE: "The hand-eye pose in {file} is as it was before the calibration.",
+    step_names.CHECK: "The last check counts no more.",
+    step_names.TABLE: "Platform, crop box and table in {file} are where they were before.",
+    step_names.VIEWS: "The views in {file} are those from before.",
+    step_names.REFERENCE: "The reference view is removed; scans begin without it.",
 }
 
 
@@ -114,7 +104,7 @@ def check(name: str, is_confirmed: bool) -> bool:
             "Was the board moved and turned, so that the camera sees it?",
         )
         found = checking.check_cell(path, terminal, operator, moved, _PRINTING)
-    print(_figure(path, CHECK))
+    print(_figure(path, step_names.CHECK))
     if not found.agreement.is_good:
         print("The calibration does not hold: calibrate anew, and see that camera and board are fixed.")
     return found.agreement.is_good
@@ -124,7 +114,7 @@ def devices(name: str) -> bool:
     """Try arm and camera, and return whether both can be used."""
     path = _path(name)
     problems = []
-    for step in (ARM, CAMERA):
+    for step in (step_names.ARM, step_names.CAMERA):
         finding = devices_of_cell.examine_device(path, step)
         print(f"{step:<10}{finding.value}")
         if finding.problem is not None:
@@ -146,8 +136,9 @@ def table(name: str, thickness_mm: float, is_confirmed: bool) -> None:
         found = measuring.measure_table(path, terminal, operator, laid, thickness_mm / MM, _PRINTING)
     x, y, z = found.moved_m * MM
     print(
-        f"{_figure(path, TABLE)}.\nThat is ({x:+.1f}, {y:+.1f}, {z:+.1f}) mm beside where the file had it; "
-        "platform, crop box and table are moved there.\n"
+        f"{_figure(path, step_names.TABLE)}.\n"
+        f"That is ({x:+.1f}, {y:+.1f}, {z:+.1f}) mm beside where the file had it; platform, crop box and "
+        "table are moved there.\n"
         f"Next: poursight cell views {name}"
     )
 
@@ -167,7 +158,7 @@ def reference(name: str, is_confirmed: bool) -> None:
         operator = PrintingOperator(path.parent) if is_confirmed else TerminalOperator(path.parent, terminal)
         laid = partial(_ask_for_board, terminal, is_confirmed, "Is the board fixed where it can stay?")
         referring.store_reference(path, terminal, operator, laid, _PRINTING)
-    print(f"Stored: {_figure(path, REFERENCE)}.")
+    print(f"Stored: {_figure(path, step_names.REFERENCE)}.")
 
 
 def undo(name: str, step: str) -> None:

@@ -54,9 +54,10 @@ class KeptRuns:
                         arrays["time_s"], arrays["positions_m"], arrays["quaternions"], arrays["T_world_body"]
                     ),
                 )
-            os.utime(path)  # the oldest are those that were not wanted for longest
         except _DAMAGED:
             return None
+        with suppress(OSError):  # a folder that may only be read
+            os.utime(path)  # the oldest are those that were not wanted for longest
         return run
 
     def store(self, settings: str, run: CupRun) -> None:

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.capture import Capture, find_board
 from app.operations.calibration.hand_eye import is_same
-from app.operations.calibration.provenance import HAND_EYE, RESULT, latest_result, read_looks
+from app.operations.calibration.provenance import RESULT, latest_result, read_looks
 from core.calibration.board import BoardSpec
 from core.calibration.checking import FEWEST_VIEWS
 from core.calibration.hand_eye import HandEyeFit
@@ -35,7 +36,7 @@ def calibrated_run(cell_file: Path, settings: CellSettings) -> tuple[Path, dict[
     Raises:
         InputError: the hand-eye pose there is another one.
     """
-    latest = latest_result(cell_file, HAND_EYE)
+    latest = latest_result(cell_file, step_names.HAND_EYE)
     if latest is None or not is_same(latest[1]["after"], settings.camera.pose):
         raise InputError(
             f"The hand-eye pose in {cell_file} is not one that was calibrated here; calibrate first."

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.around import (
     N_VIEWS,
     calibrated_fit,
@@ -18,7 +19,7 @@ from app.operations.calibration.around import (
 )
 from app.operations.calibration.capture import NOBODY, CaptureObserver, capturing
 from app.operations.calibration.hand_eye import entered_board
-from app.operations.calibration.provenance import CHECK, RESULT, now, versions
+from app.operations.calibration.provenance import RESULT, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.checking import Agreement, check_agreement
 from core.files import write_json
@@ -69,7 +70,7 @@ def check_cell(
     if not settings.has_simulated_object:
         moved()
     with capturing(
-        cell_file, settings, board, CHECK, facts, reporter, operator, observer, N_VIEWS
+        cell_file, settings, board, step_names.CHECK, facts, reporter, operator, observer, N_VIEWS
     ) as capture:
         if settings.has_simulated_object:
             middle_m = settings.place.platform_center_m + _SIMULATED_MOVE_M

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from app.operations.calibration.provenance import ARM, CAMERA, RESULT, new_run, now, versions
+from app.operations.calibration import step_names
+from app.operations.calibration.provenance import RESULT, new_run, now, versions
 from core.errors import InputError
 from core.files import write_json
 from core.session import explained
@@ -30,7 +31,7 @@ def examine_device(cell_file: Path, step: str) -> Finding:
     settings = read_cell(cell_file)
     if settings.robot.kind == "replay":
         raise InputError(f"The {settings.name} plays back a recorded scan; it has no devices to set up.")
-    finding = examine_robot(settings) if step == ARM else examine_camera(settings)
+    finding = examine_robot(settings) if step == step_names.ARM else examine_camera(settings)
     folder = new_run(cell_file, step)
     table = {"time": now(), "said": finding.value, "problem": finding.problem or ""}
     with explained(folder):
@@ -40,7 +41,7 @@ def examine_device(cell_file: Path, step: str) -> Finding:
 
 def device_table(settings: CellSettings, step: str) -> dict[str, Any]:
     """Return what the file says of a device: with something else there it has to be tried again."""
-    if step == ARM:
+    if step == step_names.ARM:
         return settings.robot.model_dump(mode="json", include={"kind", "address", "model"})
-    assert step == CAMERA, "there are two devices"
+    assert step == step_names.CAMERA, "there are two devices"
     return settings.camera.model_dump(mode="json", exclude=_SET_BY_CALIBRATION)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.capture import (
     NOBODY,
     Capture,
@@ -17,16 +18,7 @@ from app.operations.calibration.capture import (
     take_rounds,
 )
 from app.operations.calibration.cell_file import write_hand_eye
-from app.operations.calibration.provenance import (
-    HAND_EYE,
-    RESULT,
-    VIEWS,
-    now,
-    read_boards,
-    read_looks,
-    runs,
-    versions,
-)
+from app.operations.calibration.provenance import RESULT, VIEWS, now, read_boards, read_looks, runs, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.accuracy import Bounds, HeldOut, bounds, hold_out
 from core.calibration.board import BoardSpec
@@ -102,7 +94,7 @@ def calibrate_cell(
     facts: dict[str, Any] = {"board": asdict(board), "T_flange_camera": settings.camera.pose.tolist()}
     before = None if is_restarted else _interrupted(cell_file, facts)
     with capturing(
-        cell_file, settings, board, HAND_EYE, facts, reporter, operator, observer, n_views
+        cell_file, settings, board, step_names.HAND_EYE, facts, reporter, operator, observer, n_views
     ) as capture:
         if before is not None:
             capture.adopt(before)
@@ -166,7 +158,7 @@ def entered_board(cell_file: Path) -> BoardSpec:
 
 def _interrupted(cell_file: Path, facts: dict[str, Any]) -> list[Any] | None:
     """The looks of the newest run, if it did not come to a result and was about the same."""
-    folders = runs(cell_file, HAND_EYE)
+    folders = runs(cell_file, step_names.HAND_EYE)
     if not folders or (folders[-1] / RESULT).exists() or not (folders[-1] / VIEWS).is_file():
         return None
     known, looks = read_looks(folders[-1])

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.calibration.views import BoardView
@@ -25,12 +26,9 @@ from core.geometry import FloatArray
 from core.session import explained
 
 VIEWS, RESULT, WITHDRAWN = "views.json", "result.json", ".withdrawn"
-ARM, CAMERA, BOARD, HAND_EYE = "arm", "camera", "board", "hand-eye"
-CHECK, TABLE, VIEWS_STEP = "check", "table", "views"
-REFERENCE, DRIFT = "reference", "drift"
 _POSES: dict[str, tuple[str, ...]] = {
-    HAND_EYE: ("before", "after", "T_base_board"),
-    TABLE: ("T_base_board",),
+    step_names.HAND_EYE: ("before", "after", "T_base_board"),
+    step_names.TABLE: ("T_base_board",),
 }
 """What a step's result must hold as poses (4, 4)."""
 _TOOLS = ("poursight", "opencv-python-headless", "scipy", "numpy")

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.around import calibrated_run, poses_around
 from app.operations.calibration.capture import NOBODY, Capture, CaptureObserver, capturing, find_board
 from app.operations.calibration.hand_eye import entered_board
-from app.operations.calibration.provenance import DRIFT, REFERENCE, RESULT, latest_result, now, versions
+from app.operations.calibration.provenance import RESULT, latest_result, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
 from core.calibration.drift import N_IMAGES, Drift, StillLook, measure_drift, still_look
@@ -64,7 +65,9 @@ def store_reference(
     facts: dict[str, Any] = {"board": asdict(board), "hand_eye": calibrated.name}
     if not settings.has_simulated_object:
         laid()
-    with capturing(cell_file, settings, board, REFERENCE, facts, reporter, operator, observer, 1) as capture:
+    with capturing(
+        cell_file, settings, board, step_names.REFERENCE, facts, reporter, operator, observer, 1
+    ) as capture:
         find_board(capture)
         joints = _best_pose(capture)
         look = still_look(capture.look_still(joints, N_IMAGES))
@@ -80,7 +83,7 @@ def read_reference(cell_file: Path) -> Reference | None:
     Raises:
         SessionError: the record is damaged.
     """
-    latest = latest_result(cell_file, REFERENCE)
+    latest = latest_result(cell_file, step_names.REFERENCE)
     if latest is None:
         return None
     folder, table = latest
@@ -124,7 +127,7 @@ def check_drift(
         return None
     settings, facts = read_cell(cell_file), {"board": asdict(reference.board)}
     with capturing(
-        cell_file, settings, reference.board, DRIFT, facts, reporter, operator, observer, 1
+        cell_file, settings, reference.board, step_names.DRIFT, facts, reporter, operator, observer, 1
     ) as capture:
         try:
             look = still_look(capture.look_still(reference.joints_rad, N_IMAGES))

@@ -10,18 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.devices import device_table
 from app.operations.calibration.hand_eye import is_same
 from app.operations.calibration.provenance import (
-    ARM,
-    BOARD,
-    CAMERA,
-    CHECK,
-    DRIFT,
-    HAND_EYE,
-    REFERENCE,
-    TABLE,
-    VIEWS_STEP,
     BoardEntry,
     calibration_folder,
     latest_result,
@@ -74,8 +66,8 @@ def steps(cell_file: Path) -> tuple[Step, ...]:
     """
     read_cell(cell_file)
     ways: tuple[Callable[[Path], Step], ...] = (
-        partial(_device, step=ARM), partial(_device, step=CAMERA), _board, _hand_eye, _check, _table, _views,
-        _reference,
+        partial(_device, step=step_names.ARM), partial(_device, step=step_names.CAMERA),
+        _board, _hand_eye, _check, _table, _views, _reference,
     )  # fmt: skip
     return tuple(way(cell_file) for way in ways)
 
@@ -125,18 +117,22 @@ def _device(cell_file: Path, step: str) -> Step:
 def _board(cell_file: Path) -> Step:
     entries = read_boards(cell_file)
     if not entries:
-        return Step(BOARD, StepState.OPEN, "print one, and measure its squares")
+        return Step(step_names.BOARD, StepState.OPEN, "print one, and measure its squares")
     board = entries[-1].board
     said = f"{board.columns} x {board.rows} squares of {board.square_m * 1000:g} mm, {board.dictionary}"
     if not entries[-1].is_measured:
-        return Step(BOARD, StepState.OPEN, f"{said}: measure the squares on the print, and enter their side")
-    return Step(BOARD, StepState.DONE, f"{said}, as measured", entries[-1].time)
+        return Step(
+            step_names.BOARD,
+            StepState.OPEN,
+            f"{said}: measure the squares on the print, and enter their side",
+        )
+    return Step(step_names.BOARD, StepState.DONE, f"{said}, as measured", entries[-1].time)
 
 
 def _hand_eye(cell_file: Path) -> Step:
-    latest = latest_result(cell_file, HAND_EYE)
+    latest = latest_result(cell_file, step_names.HAND_EYE)
     if latest is None:
-        return Step(HAND_EYE, StepState.OPEN, "calibrate where the camera hangs")
+        return Step(step_names.HAND_EYE, StepState.OPEN, "calibrate where the camera hangs")
     folder, table = latest
     with reading(folder):
         stated, held_out = table["bounds"], table["held_out"]
@@ -148,16 +144,21 @@ def _hand_eye(cell_file: Path) -> Step:
         time, after, board = str(table["time"]), table["after"], table["board"]
     entries = read_boards(cell_file)
     if not is_same(after, read_cell(cell_file).camera.pose):
-        return Step(HAND_EYE, StepState.STALE, "the file has another hand-eye pose than was calibrated", time)
+        return Step(
+            step_names.HAND_EYE,
+            StepState.STALE,
+            "the file has another hand-eye pose than was calibrated",
+            time,
+        )
     if not entries or asdict(entries[-1].board) != board:
-        return Step(HAND_EYE, StepState.STALE, "the board was entered anew since", time)
-    return Step(HAND_EYE, StepState.DONE, figure, time)
+        return Step(step_names.HAND_EYE, StepState.STALE, "the board was entered anew since", time)
+    return Step(step_names.HAND_EYE, StepState.DONE, figure, time)
 
 
 def _check(cell_file: Path) -> Step:
-    latest = latest_result(cell_file, CHECK)
+    latest = latest_result(cell_file, step_names.CHECK)
     if latest is None:
-        return Step(CHECK, StepState.OPEN, "move the board, and look at it from all sides")
+        return Step(step_names.CHECK, StepState.OPEN, "move the board, and look at it from all sides")
     folder, table = latest
     with reading(folder):
         agreement = table["agreement"]
@@ -167,15 +168,19 @@ def _check(cell_file: Path) -> Step:
         )
         time, hand_eye, is_good = str(table["time"]), table["hand_eye"], agreement["ratio"] <= MOST_RATIO
     if not _is_by_present_camera(cell_file, hand_eye):
-        return Step(CHECK, StepState.STALE, "the calibration that was checked is not the present one", time)
-    return Step(CHECK, StepState.DONE if is_good else StepState.FAILED, figure, time)
+        return Step(
+            step_names.CHECK, StepState.STALE, "the calibration that was checked is not the present one", time
+        )
+    return Step(step_names.CHECK, StepState.DONE if is_good else StepState.FAILED, figure, time)
 
 
 def _table(cell_file: Path) -> Step:
-    latest = latest_result(cell_file, TABLE)
+    latest = latest_result(cell_file, step_names.TABLE)
     if latest is None:
         return Step(
-            TABLE, StepState.OPEN, "lay the board on the middle of the platform, and measure where it is"
+            step_names.TABLE,
+            StepState.OPEN,
+            "lay the board on the middle of the platform, and measure where it is",
         )
     folder, table = latest
     with reading(folder):
@@ -187,19 +192,22 @@ def _table(cell_file: Path) -> Step:
         time, hand_eye, after = str(table["time"]), table["hand_eye"], table["after"]
         is_same_place = is_in_file(read_cell(cell_file).place, after)
     if not is_same_place:
-        return Step(TABLE, StepState.STALE, "the file has another place than was measured", time)
+        return Step(step_names.TABLE, StepState.STALE, "the file has another place than was measured", time)
     if not _is_by_present_camera(cell_file, hand_eye):
         return Step(
-            TABLE, StepState.STALE, "it was measured with another calibration than the present one", time
+            step_names.TABLE,
+            StepState.STALE,
+            "it was measured with another calibration than the present one",
+            time,
         )
-    return Step(TABLE, StepState.DONE, figure, time)
+    return Step(step_names.TABLE, StepState.DONE, figure, time)
 
 
 def _views(cell_file: Path) -> Step:
-    latest, settings = latest_result(cell_file, VIEWS_STEP), read_cell(cell_file)
+    latest, settings = latest_result(cell_file, step_names.VIEWS), read_cell(cell_file)
     if latest is None:
         return Step(
-            VIEWS_STEP,
+            step_names.VIEWS,
             StepState.OPEN,
             f"choose views for this cell; the file has {len(settings.scan.views_rad)}",
         )
@@ -208,35 +216,42 @@ def _views(cell_file: Path) -> Step:
         time, figure, made_for = str(table["time"]), str(table["said"]), table["for"]
         is_same_set = are_in_file(settings, table["after"])
     if not is_same_set:
-        return Step(VIEWS_STEP, StepState.STALE, "the file has other views than were chosen", time)
+        return Step(step_names.VIEWS, StepState.STALE, "the file has other views than were chosen", time)
     if made_for != views_are_for(settings):
         return Step(
-            VIEWS_STEP, StepState.STALE, "camera, home or places are others than they were chosen for", time
+            step_names.VIEWS,
+            StepState.STALE,
+            "camera, home or places are others than they were chosen for",
+            time,
         )
-    return Step(VIEWS_STEP, StepState.DONE, figure, time)
+    return Step(step_names.VIEWS, StepState.DONE, figure, time)
 
 
 def _reference(cell_file: Path) -> Step:
-    latest = latest_result(cell_file, REFERENCE)
+    latest = latest_result(cell_file, step_names.REFERENCE)
     if latest is None:
-        return Step(REFERENCE, StepState.OPEN, "fix the board where it can stay, and store one view of it")
+        return Step(
+            step_names.REFERENCE, StepState.OPEN, "fix the board where it can stay, and store one view of it"
+        )
     folder, table = latest
     with reading(folder):
         time, hand_eye, n_corners = str(table["time"]), table["hand_eye"], len(table["ids"])
     if not _is_by_present_camera(cell_file, hand_eye):
-        return Step(REFERENCE, StepState.STALE, "the camera was calibrated anew since it was stored", time)
+        return Step(
+            step_names.REFERENCE, StepState.STALE, "the camera was calibrated anew since it was stored", time
+        )
     said = f"{n_corners} corners of the board, looked at again when a scan begins"
-    drifts = latest_result(cell_file, DRIFT)
+    drifts = latest_result(cell_file, step_names.DRIFT)
     if drifts is not None:
         with reading(drifts[0]):
             shift_m, turn_rad = (np.array(drifts[1][name], dtype=float) for name in ("shift_m", "turn_rad"))
             said += f"; last time it had moved by {Drift(shift_m, turn_rad).sentence}"
-    return Step(REFERENCE, StepState.DONE, said, time)
+    return Step(step_names.REFERENCE, StepState.DONE, said, time)
 
 
 def _is_by_present_camera(cell_file: Path, hand_eye: str) -> bool:
     """Whether a run of the hand-eye calibration is the one that counts."""
-    now_valid = latest_result(cell_file, HAND_EYE)
+    now_valid = latest_result(cell_file, step_names.HAND_EYE)
     if now_valid is None or now_valid[0].name != hand_eye:
         return False
     return _hand_eye(cell_file).state is StepState.DONE

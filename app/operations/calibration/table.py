@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.around import (
     N_VIEWS,
     calibrated_fit,
@@ -19,7 +20,7 @@ from app.operations.calibration.around import (
 from app.operations.calibration.capture import NOBODY, CaptureObserver, capturing
 from app.operations.calibration.cell_file import write_place
 from app.operations.calibration.hand_eye import entered_board
-from app.operations.calibration.provenance import RESULT, TABLE, now, versions
+from app.operations.calibration.provenance import RESULT, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
 from core.calibration.checking import MOST_RATIO, locate_board
@@ -85,7 +86,7 @@ def measure_table(
     if not settings.has_simulated_object:
         laid()
     with capturing(
-        cell_file, settings, board, TABLE, facts, reporter, operator, observer, N_VIEWS
+        cell_file, settings, board, step_names.TABLE, facts, reporter, operator, observer, N_VIEWS
     ) as capture:
         if settings.has_simulated_object:
             _lay_on_platform(capture.cell, thickness_m)

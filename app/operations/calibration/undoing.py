@@ -7,18 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import write_hand_eye, write_place, write_views
 from app.operations.calibration.hand_eye import is_same
-from app.operations.calibration.provenance import (
-    BOARD,
-    HAND_EYE,
-    TABLE,
-    VIEWS_STEP,
-    latest_result,
-    read_boards,
-    withdraw,
-    write_boards,
-)
+from app.operations.calibration.provenance import latest_result, read_boards, withdraw, write_boards
 from app.operations.calibration.table import is_in_file
 from app.operations.calibration.views import are_in_file
 from core.errors import InputError
@@ -40,9 +32,11 @@ class _Writing:
 
 
 _WRITINGS = {
-    HAND_EYE: _Writing(lambda settings, after: is_same(after, settings.camera.pose), write_hand_eye),
-    TABLE: _Writing(lambda settings, after: is_in_file(settings.place, after), write_place),
-    VIEWS_STEP: _Writing(are_in_file, write_views),
+    step_names.HAND_EYE: _Writing(
+        lambda settings, after: is_same(after, settings.camera.pose), write_hand_eye
+    ),
+    step_names.TABLE: _Writing(lambda settings, after: is_in_file(settings.place, after), write_place),
+    step_names.VIEWS: _Writing(are_in_file, write_views),
 }
 
 
@@ -53,7 +47,7 @@ def undo(cell_file: Path, step: str) -> None:
         InputError: it was never done, or the cell's file was changed since.
         SessionError: the disk refuses.
     """
-    if step == BOARD:
+    if step == step_names.BOARD:
         _forget_board(cell_file)
         return
     latest = latest_result(cell_file, step)
@@ -74,7 +68,7 @@ def undo(cell_file: Path, step: str) -> None:
 def _forget_board(cell_file: Path) -> None:
     entries = read_boards(cell_file)
     if not entries:
-        raise _none_to_undo(cell_file, BOARD)
+        raise _none_to_undo(cell_file, step_names.BOARD)
     write_boards(cell_file, entries[:-1])
 
 

@@ -8,16 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import write_views
-from app.operations.calibration.provenance import (
-    HAND_EYE,
-    RESULT,
-    VIEWS_STEP,
-    latest_result,
-    new_run,
-    now,
-    versions,
-)
+from app.operations.calibration.provenance import RESULT, latest_result, new_run, now, versions
 from core.errors import InputError, MotionError
 from core.files import reading, write_json
 from core.motion.box_views import choose_box_views
@@ -79,7 +72,7 @@ def choose_views(cell_file: Path, reporter: Reporter, n_views: int = USUAL_VIEWS
         )
     reporter.raise_if_cancelled()
     after = [view.joints_rad.round(_TENTH_MM_RAD).tolist() for view in views]
-    found = CellViews(new_run(cell_file, VIEWS_STEP), views)
+    found = CellViews(new_run(cell_file, step_names.VIEWS), views)
     result: dict[str, Any] = {
         "time": now(),
         "said": found.sentence,
@@ -125,7 +118,7 @@ def _task(settings: CellSettings, cell_file: Path) -> ViewTask:
     low, high = np.array(place.crop_min_m), np.array(place.crop_max_m)
     low[2] = place.platform_height_m
     task = view_task(settings, low, high)
-    latest = latest_result(cell_file, HAND_EYE)
+    latest = latest_result(cell_file, step_names.HAND_EYE)
     if latest is None or "intrinsics" not in latest[1]:
         return task
     with reading(latest[0] / RESULT):

@@ -10,8 +10,9 @@ from functools import partial
 
 import pytest
 
+from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell, write_views
-from app.operations.calibration.provenance import HAND_EYE, read_looks, runs
+from app.operations.calibration.provenance import read_looks, runs
 from app.operations.calibration.steps import enter_board
 from core.calibration.board import BoardSpec
 from core.files import write_whole
@@ -47,7 +48,7 @@ def start(*words):
 
 
 def n_looks(path):
-    return len(read_looks(runs(path, HAND_EYE)[-1])[1])
+    return len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1])
 
 
 def test_a_cell_is_made_and_its_steps_are_listed(poursight, cells):
@@ -165,7 +166,12 @@ def test_kill_9_in_the_middle_keeps_every_look_and_the_same_command_goes_on(pour
     path = measured_cell(seed=9)
     before = path.read_bytes()
     process = start("calibrate", "bench", N_VIEWS)
-    wait_until(lambda: bool(runs(path, HAND_EYE)) and len(list(runs(path, HAND_EYE)[-1].glob("*.png"))) >= 4)
+    wait_until(
+        lambda: (
+            bool(runs(path, step_names.HAND_EYE))
+            and len(list(runs(path, step_names.HAND_EYE)[-1].glob("*.png"))) >= 4
+        )
+    )
     process.kill()
     process.communicate()
     assert path.read_bytes() == before

@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
+from app.operations.calibration import step_names
 from app.operations.calibration.capture import CaptureObserver
 from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
 from app.operations.calibration.check import check_cell
 from app.operations.calibration.hand_eye import calibrate_cell
-from app.operations.calibration.provenance import HAND_EYE, read_looks, runs
+from app.operations.calibration.provenance import read_looks, runs
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
@@ -130,7 +131,7 @@ def test_a_board_that_moves_meanwhile_is_noticed_and_nothing_is_lost(monkeypatch
     with pytest.raises(StageError, match="The board moved between view"):
         calibrated(path)
     assert path.read_bytes() == before
-    _, looks = read_looks(runs(path, HAND_EYE)[-1])
+    _, looks = read_looks(runs(path, step_names.HAND_EYE)[-1])
     assert sum(look.is_used for look in looks) >= N_VIEWS
 
 

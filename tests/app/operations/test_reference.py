@@ -5,9 +5,10 @@ import shutil
 import numpy as np
 import pytest
 
+from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
 from app.operations.calibration.hand_eye import calibrate_cell
-from app.operations.calibration.provenance import DRIFT, REFERENCE, RESULT, runs
+from app.operations.calibration.provenance import RESULT, runs
 from app.operations.calibration.reference import check_drift, read_reference, store_reference
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
@@ -70,7 +71,7 @@ def bump(monkeypatch):
 
 
 def step(path):
-    return next(step for step in steps(path) if step.name == REFERENCE)
+    return next(step for step in steps(path) if step.name == step_names.REFERENCE)
 
 
 def test_a_camera_that_did_not_move_is_said_nothing_of(referred):
@@ -79,7 +80,7 @@ def test_a_camera_that_did_not_move_is_said_nothing_of(referred):
     assert drift.position_m < 0.001
     assert reporter.said == []
     assert step(referred).state is StepState.DONE and "last time" in step(referred).figure
-    assert len(runs(referred, DRIFT)) == 1
+    assert len(runs(referred, step_names.DRIFT)) == 1
 
 
 def test_one_that_moved_a_little_is_warned_of_with_figure_and_place(referred, bump):
@@ -112,13 +113,13 @@ def test_limits_are_the_cell_file_s(referred, bump):
 def test_another_calibration_makes_it_stale_and_undo_takes_it_back(referred):
     undo(referred, "hand-eye")
     assert step(referred).state is StepState.STALE
-    undo(referred, REFERENCE)
+    undo(referred, step_names.REFERENCE)
     assert step(referred).state is StepState.OPEN
     assert check_drift(referred, Reporter(), None) is None
 
 
 def test_a_damaged_look_is_named(referred):
-    [folder] = runs(referred, REFERENCE)
+    [folder] = runs(referred, step_names.REFERENCE)
     (folder / RESULT).write_text((folder / RESULT).read_text().replace('"ids"', '"idz"'))
     with pytest.raises(SessionError, match=r"result\.json is damaged"):
         read_reference(referred)

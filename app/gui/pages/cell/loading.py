@@ -10,20 +10,9 @@ import numpy as np
 
 from app.gui.pages.cell_model import ShownCell, load_shown_cell
 from app.gui.views.scene import Frustum
+from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import known_cells
-from app.operations.calibration.provenance import (
-    CHECK,
-    HAND_EYE,
-    REFERENCE,
-    RESULT,
-    TABLE,
-    VIEWS,
-    VIEWS_STEP,
-    BoardEntry,
-    read_boards,
-    read_looks,
-    runs,
-)
+from app.operations.calibration.provenance import RESULT, VIEWS, BoardEntry, read_boards, read_looks, runs
 from app.operations.calibration.steps import Step, steps
 from core.motion.kinematics import flange_pose
 from core.scan.view_files import read_color
@@ -36,7 +25,7 @@ if TYPE_CHECKING:
     from core.geometry import FloatArray
     from hardware.cell import CellSettings
 
-_WITH_LOOKS = (HAND_EYE, CHECK, TABLE, REFERENCE)
+_WITH_LOOKS = (step_names.HAND_EYE, step_names.CHECK, step_names.TABLE, step_names.REFERENCE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,8 +89,8 @@ def load_cell(key: CellKey) -> CellContents:
     if key.path is None:
         return CellContents(None, shown, known)
     evidence = {step: _evidence(key.path, step, key.settings) for step in _WITH_LOOKS}
-    evidence[VIEWS_STEP] = Evidence(_scan_views(key.settings))
-    boards, begun = read_boards(key.path), runs(key.path, HAND_EYE)
+    evidence[step_names.VIEWS] = Evidence(_scan_views(key.settings))
+    boards, begun = read_boards(key.path), runs(key.path, step_names.HAND_EYE)
     is_interrupted = bool(begun) and (begun[-1] / VIEWS).is_file() and not (begun[-1] / RESULT).exists()
     board = boards[-1] if boards else None
     return CellContents(key.path, shown, known, steps(key.path), evidence, board, is_interrupted)

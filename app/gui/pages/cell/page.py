@@ -24,7 +24,7 @@ from app.gui.views.scene import Frustum
 from app.gui.views.state_mark import State
 from app.jobs.cell_events import BoardSought, LooksPlanned
 from app.jobs.scan_events import ScanQuestion
-from app.operations.calibration.provenance import HAND_EYE, VIEWS_STEP
+from app.operations.calibration import step_names
 from app.operations.calibration.steps import Step, StepState
 from core.calibration.board import BoardSpec
 from core.errors import PoursightError
@@ -118,8 +118,8 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
             return
         found = Evidence()
         for name, seen in self.content.evidence.items():
-            found = seen if seen.frusta and name != VIEWS_STEP else found
-            if name == (self.step or HAND_EYE):
+            found = seen if seen.frusta and name != step_names.VIEWS else found
+            if name == (self.step or step_names.HAND_EYE):
                 found = seen if seen.frusta else found
                 break
         self.view.show_looks(found.frusta, found.T_base_board)

@@ -23,7 +23,7 @@ from app.gui.pages.layouts import row_of
 from app.gui.pages.page import SidePanel
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import heading, rule, say, text_label
-from app.operations.calibration.provenance import BOARD, HAND_EYE, TABLE, VIEWS_STEP
+from app.operations.calibration import step_names
 from core.calibration.board import DICTIONARIES, BoardSpec
 
 MM = 1000.0
@@ -200,10 +200,10 @@ class StepOptions(QStackedWidget):
         self._thickness = _millimetres("thickness", 0, 50, 4.0)
         self._n_scan_views = _count("n_scan_views", 6, 200, 24)
         self._add("", QFormLayout())
-        self._add(BOARD, self._board_form())
-        self._add(HAND_EYE, _form(self.tr("Views"), self._n_views))
-        self._add(TABLE, _form(self.tr("Thickness of the board"), self._thickness))
-        self._add(VIEWS_STEP, _form(self.tr("Views at most"), self._n_scan_views))
+        self._add(step_names.BOARD, self._board_form())
+        self._add(step_names.HAND_EYE, _form(self.tr("Views"), self._n_views))
+        self._add(step_names.TABLE, _form(self.tr("Thickness of the board"), self._thickness))
+        self._add(step_names.VIEWS, _form(self.tr("Views at most"), self._n_scan_views))
 
     def show_step(self, step: str) -> None:
         """Show what a step may be told."""

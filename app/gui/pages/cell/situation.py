@@ -10,20 +10,16 @@ from app.gui.pages.cell.loading import CellContents
 from app.gui.pages.cell.words import capitalized, step_words
 from app.gui.views.state_mark import State
 from app.jobs.cell_events import BoardSought
-from app.operations.calibration.provenance import (
-    ARM,
-    BOARD,
-    CAMERA,
-    CHECK,
-    HAND_EYE,
-    REFERENCE,
-    TABLE,
-    VIEWS_STEP,
-)
+from app.operations.calibration import step_names
 from app.operations.calibration.steps import Step, StepState
 
 translate = QCoreApplication.translate
-_NEEDS = {HAND_EYE: BOARD, CHECK: HAND_EYE, TABLE: HAND_EYE, REFERENCE: HAND_EYE}
+_NEEDS = {
+    step_names.HAND_EYE: step_names.BOARD,
+    step_names.CHECK: step_names.HAND_EYE,
+    step_names.TABLE: step_names.HAND_EYE,
+    step_names.REFERENCE: step_names.HAND_EYE,
+}
 """The step that must be done before another one."""
 _SHOWN_REFUSALS = 3
 
@@ -73,7 +69,7 @@ class Situation:
     @property
     def can_continue(self) -> bool:
         """Whether a calibration was interrupted."""
-        return self.step == HAND_EYE and self.contents is not None and self.contents.is_interrupted
+        return self.step == step_names.HAND_EYE and self.contents is not None and self.contents.is_interrupted
 
     @property
     def primary_text(self) -> str:
@@ -127,7 +123,11 @@ def now_of(now: Situation) -> Now:
     if chosen is None:
         figures = {step.name: capitalized(step.figure) for step in now.steps}
         headline = translate("CellPage", "This cell is calibrated, checked, and ready to scan.")
-        return Now("fresh", headline, tuple(f"{figures[name]}." for name in (HAND_EYE, CHECK, VIEWS_STEP)))
+        return Now(
+            "fresh",
+            headline,
+            tuple(f"{figures[name]}." for name in (step_names.HAND_EYE, step_names.CHECK, step_names.VIEWS)),
+        )
     n_done = sum(step.state is StepState.DONE for step in now.steps)
     title = step_words(chosen.name, now.is_simulated).title
     said = translate("CellPage", "{n} of {total} steps are done.").format(n=n_done, total=len(now.steps))
@@ -166,11 +166,11 @@ def obstacle_of(now: Situation) -> str:
 def _running(now: Situation) -> Now:
     if now.question:
         return Now("stale", now.question, (translate("CellPage", "Go on says yes, Cancel says no."),))
-    if now.step == ARM:
+    if now.step == step_names.ARM:
         return Now("running", translate("CellPage", "Asking the controller …"))
-    if now.step == CAMERA:
+    if now.step == step_names.CAMERA:
         return Now("running", translate("CellPage", "Taking an image …"))
-    if now.step == VIEWS_STEP:
+    if now.step == step_names.VIEWS:
         return Now("running", translate("CellPage", "Choosing views that show all sides …"))
     if not now.looks:
         return Now("running", translate("CellPage", "Connecting to the cell …"))
@@ -180,7 +180,7 @@ def _running(now: Situation) -> Now:
         for look in now.looks
         if look.problem
     )
-    if now.step == HAND_EYE:
+    if now.step == step_names.HAND_EYE:
         said = translate("CellPage", "Looking at the board: {n} of {total} views can be used.")
         if n >= now.n_planned:
             said = translate("CellPage", "Fitting where the camera hangs to {n} views …")
@@ -191,7 +191,7 @@ def _running(now: Situation) -> Now:
 
 
 def _remedy(step: str) -> str:
-    if step == CHECK:
+    if step == step_names.CHECK:
         return translate(
             "CellPage", "Calibrate anew, and see that camera and board are fixed; undo takes the check back."
         )

@@ -8,16 +8,7 @@ from datetime import datetime
 from PySide6.QtCore import QCoreApplication
 
 from app.gui.views.state_mark import State
-from app.operations.calibration.provenance import (
-    ARM,
-    BOARD,
-    CAMERA,
-    CHECK,
-    HAND_EYE,
-    REFERENCE,
-    TABLE,
-    VIEWS_STEP,
-)
+from app.operations.calibration import step_names
 from app.operations.calibration.steps import StepState
 
 translate = QCoreApplication.translate
@@ -48,11 +39,11 @@ class StepWords:
 
 def step_words(step: str, is_simulated: bool) -> StepWords:
     """Return the words of a step."""
-    if step == BOARD and is_simulated:
+    if step == step_names.BOARD and is_simulated:
         what = translate(
             "CellPage", "The simulated board lies on the platform already; its squares measure 30 mm."
         )
-    elif step == BOARD:
+    elif step == step_names.BOARD:
         what = translate(
             "CellPage",
             "Print the sheet at 100 %, see that its bar measures 100 mm, and glue it flat onto something "
@@ -69,42 +60,42 @@ def step_words(step: str, is_simulated: bool) -> StepWords:
 def _titles() -> dict[str, tuple[str, str, str]]:
     """Title, button, and button when it was done before, by step."""
     return {
-        ARM: (
+        step_names.ARM: (
             translate("CellPage", "Arm"),
             translate("CellPage", "Find the arm"),
             translate("CellPage", "Look again"),
         ),
-        CAMERA: (
+        step_names.CAMERA: (
             translate("CellPage", "Camera"),
             translate("CellPage", "Try the camera"),
             translate("CellPage", "Try again"),
         ),
-        BOARD: (
+        step_names.BOARD: (
             translate("CellPage", "Calibration board"),
             translate("CellPage", "Enter the measured side"),
             translate("CellPage", "Enter another side"),
         ),
-        HAND_EYE: (
+        step_names.HAND_EYE: (
             translate("CellPage", "Camera on the arm"),
             translate("CellPage", "Calibrate"),
             translate("CellPage", "Calibrate again"),
         ),
-        CHECK: (
+        step_names.CHECK: (
             translate("CellPage", "Independent check"),
             translate("CellPage", "Check"),
             translate("CellPage", "Check again"),
         ),
-        TABLE: (
+        step_names.TABLE: (
             translate("CellPage", "Platform and table"),
             translate("CellPage", "Measure the platform"),
             translate("CellPage", "Measure again"),
         ),
-        VIEWS_STEP: (
+        step_names.VIEWS: (
             translate("CellPage", "Scan views"),
             translate("CellPage", "Choose the views"),
             translate("CellPage", "Choose again"),
         ),
-        REFERENCE: (
+        step_names.REFERENCE: (
             translate("CellPage", "Reference view"),
             translate("CellPage", "Store a reference view"),
             translate("CellPage", "Store another one"),
@@ -114,31 +105,33 @@ def _titles() -> dict[str, tuple[str, str, str]]:
 
 def _what(step: str) -> str:
     return {
-        ARM: translate(
+        step_names.ARM: translate(
             "CellPage", "Asks the controller what it is, and whether it can be used. Nothing moves."
         ),
-        CAMERA: translate("CellPage", "Takes an image, and sees whether it has depth. Nothing moves."),
-        HAND_EYE: translate(
+        step_names.CAMERA: translate(
+            "CellPage", "Takes an image, and sees whether it has depth. Nothing moves."
+        ),
+        step_names.HAND_EYE: translate(
             "CellPage",
             "The arm looks at the board from many sides, and finds where the camera hangs. Views that are no "
             "good are refused and replaced. It is accepted only if views that the fit did not see agree.",
         ),
-        CHECK: translate(
+        step_names.CHECK: translate(
             "CellPage",
             "The board lies elsewhere, and the arm looks at it from all sides: each view must have it at the "
             "same place. Nothing is fitted.",
         ),
-        TABLE: translate(
+        step_names.TABLE: translate(
             "CellPage",
             "The board lies on the middle of the platform. Its plane gives the platform's height, and the "
             "crop box follows.",
         ),
-        VIEWS_STEP: translate(
+        step_names.VIEWS: translate(
             "CellPage",
             "Chooses from where this arm scans what may fill the crop box, over all sides that it reaches. "
             "Nothing moves.",
         ),
-        REFERENCE: translate(
+        step_names.REFERENCE: translate(
             "CellPage",
             "The arm looks at the board once more. Each scan takes the same look again, and says if the "
             "camera has moved since.",
@@ -149,7 +142,7 @@ def _what(step: str) -> str:
 def _by_hand(step: str) -> str:
     """What somebody has to do at a real cell."""
     return {
-        HAND_EYE: translate(
+        step_names.HAND_EYE: translate(
             "CellPage",
             "Lay the board flat near the platform, and guide the arm by hand to where the camera sees all of "
             "it.",

@@ -12,18 +12,8 @@ from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
 from app.gui.pages.cell.side import StepOptions
 from app.jobs.cell_work import CellWork
-from app.operations.calibration import steps, undoing
+from app.operations.calibration import step_names, steps, undoing
 from app.operations.calibration.cell_file import known_cells, new_cell
-from app.operations.calibration.provenance import (
-    ARM,
-    BOARD,
-    CAMERA,
-    CHECK,
-    HAND_EYE,
-    REFERENCE,
-    TABLE,
-    VIEWS_STEP,
-)
 
 _PATIENCE_REAL_S = 4.0
 """A real arm comes to rest before its process may be ended."""
@@ -58,25 +48,25 @@ class CellJobs:
             InputError: there can be no board as it was entered.
         """
         path = self._path()
-        if step == BOARD:
+        if step == step_names.BOARD:
             enter = partial(
                 steps.enter_board, path, options.measured_board, options.paper, options.measured_m
             )
             self._desk.background.run(_IN_BACKGROUND, enter, lambda _: self.read_again())
-        elif step in (ARM, CAMERA):
+        elif step in (step_names.ARM, step_names.CAMERA):
             self._start(step, title, CellWork.examine, path, step)
-        elif step == HAND_EYE:
+        elif step == step_names.HAND_EYE:
             self._start(step, title, CellWork.calibrate, path, options.n_views, is_restarted)
             if self._job is not None:  # what was taken since is used
                 self._job.start_again = partial(self.do, step, title, options)
-        elif step == CHECK:
+        elif step == step_names.CHECK:
             self._start(step, title, CellWork.check, path)
-        elif step == TABLE:
+        elif step == step_names.TABLE:
             self._start(step, title, CellWork.measure_table, path, options.thickness_m)
-        elif step == REFERENCE:
+        elif step == step_names.REFERENCE:
             self._start(step, title, CellWork.store_reference, path)
         else:
-            assert step == VIEWS_STEP, "there are no others"
+            assert step == step_names.VIEWS, "there are no others"
             self._start(step, title, CellWork.choose_views, path, options.n_scan_views)
 
     def print_board(self, options: StepOptions, then: Callable[[Path], None]) -> None:

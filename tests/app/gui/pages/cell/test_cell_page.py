@@ -12,8 +12,9 @@ from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QSpinBox
 from app.gui.pages.cell.page import CellPage
 from app.gui.pages.cell.step_list import StepRow
 from app.jobs.scan_events import ScanQuestion
+from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
-from app.operations.calibration.provenance import HAND_EYE, read_looks, runs
+from app.operations.calibration.provenance import read_looks, runs
 from app.operations.calibration.steps import enter_board
 from core.calibration.board import BoardSpec
 from hardware.cell import read_cell
@@ -192,7 +193,7 @@ def test_a_cell_is_calibrated_killed_continued_checked_and_undone(qtbot, desk, p
     os.kill(desk.scan_host.pid, signal.SIGKILL)
     qtbot.waitUntil(lambda: bool(failed))
     settle(qtbot, desk, page)
-    n_kept = len(read_looks(runs(path, HAND_EYE)[-1])[1])
+    n_kept = len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1])
     assert n_kept >= 3
     pick(qtbot, page, "hand-eye")
     assert button(page).text() == "Continue calibration"
@@ -202,7 +203,7 @@ def test_a_cell_is_calibrated_killed_continued_checked_and_undone(qtbot, desk, p
     qtbot.waitUntil(lambda: desk.jobs.is_idle)
     settle(qtbot, desk, page)
     assert states(page)["hand-eye"] == "fresh", failed[1:]
-    assert len(runs(path, HAND_EYE)) == 2
+    assert len(runs(path, step_names.HAND_EYE)) == 2
     assert abs(desk.cell.settings.camera.pose - before).max() > 1e-3
 
     pick(qtbot, page, "check")
@@ -230,6 +231,6 @@ def test_stop_ends_a_calibration_and_what_was_taken_is_kept(qtbot, desk, page):
     desk.jobs.cancel()
     settle(qtbot, desk, page)
     assert path.read_bytes() == before
-    assert len(read_looks(runs(path, HAND_EYE)[-1])[1]) >= 2
+    assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) >= 2
     pick(qtbot, page, "hand-eye")
     assert button(page).text() == "Continue calibration"

@@ -1,0 +1,12 @@
+"""What the steps of setting a cell up are called: by commands, in records, and as folders."""
+
+ARM = "arm"
+CAMERA = "camera"
+BOARD = "board"
+HAND_EYE = "hand-eye"
+CHECK = "check"
+TABLE = "table"
+VIEWS = "views"
+REFERENCE = "reference"
+DRIFT = "drift"
+"""Not a step: each scan compares its reference view with the stored one."""
