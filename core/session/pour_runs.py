@@ -5,6 +5,7 @@ A run is no stage: it is written line by line while it happens, so that a crash 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import Path
@@ -124,9 +125,9 @@ def pour_runs(session: Path) -> list[PourRun]:
     return [PourRun.load(folder) for folder in _run_folders(session)]
 
 
-def unfinished_run(session: Path) -> PourRun | None:
-    """Return the pour that was stopped and not backed off from since; none if there is none."""
-    for run in reversed(pour_runs(session)):
+def unfinished_run(runs: Sequence[PourRun]) -> PourRun | None:
+    """Return the pour of `runs` (the oldest first) that was stopped and not backed off from since, if any."""
+    for run in reversed(runs):
         if run.is_done:
             return None
         if not run.is_back_off:

@@ -22,7 +22,7 @@ from core.motion.pour.planning import plan_pour
 from core.motion.pour.recovery import check_rejoining, on_the_way_back, plan_back_off
 from core.progress import Reporter
 from core.session import explained
-from core.session.pour_runs import next_run_folder, unfinished_run
+from core.session.pour_runs import next_run_folder, pour_runs, unfinished_run
 from hardware.cell import Arm
 from hardware.driving import SAME_PLACE_RAD, WatchedArm, outermost
 from hardware.errors import DeviceError, OutputChanged, RobotError, RobotStopped, TrackingLost
@@ -163,7 +163,7 @@ class Pouring:
         Returns what is known of it, in a sentence, and is interrupted then as if it had been this program's;
         empty if there is no such run.
         """
-        run = unfinished_run(self._session)
+        run = unfinished_run(pour_runs(self._session))
         if run is None:
             return ""
         try:

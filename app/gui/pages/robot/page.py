@@ -20,7 +20,7 @@ from app.gui.pages.robot.side import RobotSide
 from app.gui.pages.robot.steps import Activity, Missing, Step, missing_for_a_pour
 from app.gui.pages.robot.view import ArmView
 from app.jobs.arm_events import MoveProgress
-from core.session.pour_runs import PourRun, write_outcome
+from core.session.pour_runs import PourRun, unfinished_run, write_outcome
 from hardware.modes import unreadiness
 
 _UPDATE_MS = 500
@@ -232,7 +232,10 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         elif step is Step.PLAN:
             failure = procedure.failure or procedure.stopped
             is_closed = self._is_gripper_closed
-            side.start.show_plan(is_closed, procedure.has_backed_off, failure, procedure.cup)
+            if self._has_way_back:
+                side.start.show_way_back(failure)
+            else:
+                side.start.show_plan(is_closed, procedure.has_backed_off, failure, procedure.cup)
             if is_closed:
                 side.state.unfold()
         elif step is Step.CHECK and procedure.planned is not None:
@@ -253,7 +256,7 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         if step is Step.CONNECT:
             is_ready = is_ready and self.desk.cell.settings is not None
         if step is Step.PLAN:
-            is_ready = is_ready and not self._is_gripper_closed
+            is_ready = is_ready and (self._has_way_back or not self._is_gripper_closed)
         if step is Step.OUTCOME:
             is_ready = is_ready and side.outcome.is_complete
         side.primary.setEnabled(is_ready)
@@ -273,6 +276,12 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
     def _is_gripper_closed(self) -> bool:
         status = self.procedure.situation.status
         return status is not None and bool(status.is_gripper_closed)
+
+    @property
+    def _has_way_back(self) -> bool:
+        """Whether a pour was not finished and its cup may still be in the hand: an earlier program's."""
+        runs = () if self.content is None else self.content.runs
+        return self._is_gripper_closed and unfinished_run(runs) is not None
 
     def _missing(self) -> Missing | None:
         if self.content is None and self.failure:
@@ -313,7 +322,7 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         texts = {
             Step.EMPTY: "" if self.missing is None else self.missing.button,
             Step.CONNECT: self.tr("Connect"),
-            Step.PLAN: self.tr("Plan"),
+            Step.PLAN: self.tr("Find the way back") if self._has_way_back else self.tr("Plan"),
             Step.STOPPED: self.tr("Make the arm ready"),
             Step.PLAN_BACK_OFF: self.tr("Plan the return"),
             Step.OUTCOME: self.tr("Save"),

@@ -111,6 +111,15 @@ class StartPanel(Panel):
         self._show(self.tr("Plan the pour"), text, note, failure)
         self._empty.setVisible(cup.number > 1)
 
+    def show_way_back(self, failure: str) -> None:
+        """Say that the cup of a pour that was not finished may be in the hand, and what can be done."""
+        text = self.tr(
+            "The gripper is closed and the last pour was not finished, so its cup may be in the hand. The "
+            "way back is planned from where the arm is, and shown before anything moves."
+        )
+        note = self.tr("If the hand is empty, or you want to take the cup yourself, open the gripper below.")
+        self._show(self.tr("A pour was not finished"), text, note, failure)
+
     def _show(self, heading: str, text: str, note: str = "", failure: str = "") -> None:
         self.heading.setText(heading)
         self._empty.hide()

@@ -276,7 +276,7 @@ class PourProcedure(QObject):
         """A pour was made: in the simulated cell physics gives the outcome, at a real table a person does."""
         self.planned, self.run, self.activity = None, run, Activity.NONE
         task, cell = self._task, self._cell
-        if task is not None and cell is not None and cell.is_simulated:
+        if task is not None and cell is not None and cell.has_simulated_object:
             title, work, host = (
                 self.tr("Count the spilled candies"),
                 SessionWork.simulate_outcome,

@@ -39,3 +39,20 @@ def open_session(page, qtbot):
         qtbot.waitUntil(lambda: page.desk.background.is_idle)
 
     return open_
+
+
+@pytest.fixture
+def reach(page, qtbot):
+    """Waits until a step is reached and nothing is under way."""
+
+    def reach_(step):
+        def is_there():
+            is_idle = page.desk.jobs.is_idle and page.desk.background.is_idle
+            procedure = page.procedure
+            assert procedure.step is step and is_idle, (
+                f"{procedure.step}: {procedure.failure} {procedure.stopped}"
+            )
+
+        qtbot.waitUntil(is_there)
+
+    return reach_

@@ -22,30 +22,12 @@ from core.session.cups import Cup
 from core.session.pour_runs import pour_runs
 from hardware.cell.reading import CELL_FOLDER
 from hardware.simulation.ur_controller.identity import CONTROL_PORT
+from tests.app.gui.pages.robot.presses import CHECKS, hold, pour_until, text, tick_all
 from tests.awake import within
 
 pytestmark = pytest.mark.system
 
 pytest.importorskip("rtde_control")
-
-CHECKS = ("check_cup", "check_area", "check_speed", "check_stop")
-
-
-@pytest.fixture
-def reach(page, qtbot):
-    """Waits until a step is reached and nothing is under way."""
-
-    def reach_(step):
-        def is_there():
-            is_idle = page.desk.jobs.is_idle and page.desk.background.is_idle
-            procedure = page.procedure
-            assert procedure.step is step and is_idle, (
-                f"{procedure.step}: {procedure.failure} {procedure.stopped}"
-            )
-
-        qtbot.waitUntil(is_there)
-
-    return reach_
 
 
 @pytest.fixture
@@ -55,36 +37,6 @@ def ready(page, open_session, mug_session, reach):
     page.side.primary.click()
     reach(Step.PLAN)
     return page
-
-
-def hold(qtbot, button):
-    """Press a button until it is confirmed."""
-    qtbot.mousePress(button, Qt.MouseButton.LeftButton)
-    with qtbot.waitSignal(button.confirmed):
-        pass
-    qtbot.mouseRelease(button, Qt.MouseButton.LeftButton)
-
-
-def tick_all(page, is_ticked=True):
-    for name in CHECKS:
-        page.findChild(QCheckBox, name).setChecked(is_ticked)
-
-
-def pour_until(page, qtbot, reach, move):
-    """Plan, confirm, and return when a move is well under way."""
-    page.side.primary.click()
-    reach(Step.CHECK)
-    tick_all(page)
-    hold(qtbot, page.side.hold_to_pour)
-    with qtbot.waitSignal(
-        page.procedure.moved,
-        check_params_cb=lambda told: told.name == move and told.fraction > 0.2,
-    ):
-        pass
-
-
-def text(page, name):
-    return page.findChild(QLabel, name).text()
 
 
 def test_with_a_real_arm_nothing_is_ticked_before_somebody_does(qtbot):
