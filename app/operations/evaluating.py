@@ -27,6 +27,7 @@ from core.evaluation.evaluation import (
 from core.evaluation.labels import LabelledObject, read_labels
 from core.evaluation.variants import Variant
 from core.files import make_folder, write_whole
+from core.formats import excerpt
 from core.parameters import Parameters, flatten
 from core.progress import Reporter
 from core.session import explained
@@ -119,7 +120,7 @@ class PreparedObject:
         """
         if Path(one.name).name != one.name:
             raise InputError(
-                f"The labels name an object '{one.name}', which cannot be a file's name; rename it."
+                f"The labels name an object '{excerpt(one.name)}', which cannot be a file's name; rename it."
             )
         try:
             content, problem = one.mesh.read_bytes(), ""
