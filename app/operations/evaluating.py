@@ -20,7 +20,7 @@ from core.evaluation.evaluation import (
     EvaluatedObject,
     Evaluation,
     digest_of,
-    read_trial,
+    kept_trial,
     trial_file,
     write_trial,
 )
@@ -259,7 +259,7 @@ class _Run:
     def _is_kept(self, one: PreparedObject, seed: int, variant: Variant) -> bool:
         """Whether the trial is done; what was made of another input is removed, lest it be taken for it."""
         path, key = self._place(one, seed, variant)
-        trial = read_trial(path, key)
+        trial = kept_trial(path, key)
         if trial is None or trial.problem:
             path.unlink(missing_ok=True)
             return False
