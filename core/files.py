@@ -7,9 +7,10 @@ import errno
 import json
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from io import BytesIO, StringIO
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ def write_whole(path: Path, content: str | bytes) -> None:
     Raises:
         OSError: the file cannot be written; what was there before is untouched.
     """
-    unfinished = path.with_name(f".{path.name}.part")
+    unfinished = _unfinished(path)
     try:
         if isinstance(content, str):
             unfinished.write_text(content, encoding="utf-8")
@@ -36,17 +37,34 @@ def write_whole(path: Path, content: str | bytes) -> None:
         unfinished.unlink(missing_ok=True)
 
 
+def check_writable(path: Path) -> None:
+    """Find out whether `write_whole` can write a file, before there is something to write.
+
+    Raises:
+        OSError: its folder takes no file, or none of such a name.
+    """
+    with suppress(FileNotFoundError):
+        _unfinished(path).lstat()  # its name may be too long
+    TemporaryFile(dir=path.parent).close()  # /proc, for one, says of itself that it can be written
+
+
+def _unfinished(path: Path) -> Path:
+    return path.with_name(f".{path.name}.part")
+
+
 def make_folder(folder: Path) -> None:
     """Make a folder and those above it, unless it is there.
 
     Raises:
-        InputError: there is a file of that name.
+        InputError: there is a file of that name, or no folder can be made there.
         OSError: the system refuses.
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError) as error:
         raise InputError(f"{folder} cannot be made a folder, for there is a file; choose another.") from error
+    except FileNotFoundError as error:  # /proc, for one
+        raise InputError(f"{folder} cannot be made: no folder can be made there; choose another.") from error
 
 
 def write_json(path: Path, table: dict[str, Any]) -> None:

@@ -17,6 +17,7 @@ from app.operations import pouring
 from app.operations.choosing import choose_pour
 from app.operations.doctor import examine
 from app.operations.outcome import enter_outcome
+from core.formats import excerpt
 from core.imagination.kept_runs import KeptRuns
 from core.motion.pour.planning import plan_pour
 from core.session import Session, explained
@@ -104,6 +105,8 @@ def serve_controller(address: str, model: str, version: str, speed_up: float, fa
     Raises:
         InputError: an unknown model, version or fault, or the address is taken.
     """
+    # What is refused is quoted: of a word that is no name at all the beginning will do.
+    model, version, address, *faults = map(excerpt, (model, version, address, *faults))
     request = ControllerSettings(identity(model, version), address, speed_up=speed_up, faults=faults)
 
     def listens(at: str) -> None:

@@ -6,23 +6,28 @@ from typing import Annotated, Literal, Optional
 
 import typer
 
+from app.cli.options import given_word
+
 cell = typer.Typer(
     help="A cell from a bare table: devices, board, calibration, check, table, views.", rich_markup_mode=None
 )
 
-NameArgument = Annotated[str, typer.Argument(metavar="NAME|FILE", help="A cell's name, or its file.")]
+NameArgument = Annotated[
+    str, typer.Argument(metavar="NAME|FILE", help="A cell's name, or its file.", parser=given_word)
+]
 YesOption = Annotated[bool, typer.Option("--yes", help="Let a real arm move without asking.")]
 
 
 @cell.command()
 def new(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="What people call it.")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What people call it.", parser=given_word)],
     simulated: Annotated[
         bool, typer.Option("--simulated", help="A cell without devices, to rehearse in.")
     ] = False,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of a simulated cell's true set-up.")] = 0,
     address: Annotated[
-        Optional[str], typer.Option("--address", metavar="A", help="Of a real arm's controller.")  # noqa: UP045
+        Optional[str],  # noqa: UP045
+        typer.Option("--address", metavar="A", help="Of a real arm's controller.", parser=given_word),
     ] = None,
 ) -> None:
     """Write a new cell's file, to be completed step by step."""
@@ -38,7 +43,9 @@ def board(
     columns: Annotated[int, typer.Option("--columns", help="Squares in a row.")] = 8,
     rows: Annotated[int, typer.Option("--rows", help="Rows of squares.")] = 5,
     square_mm: Annotated[float, typer.Option("--square-mm", help="Side of a square to print.")] = 30.0,
-    dictionary: Annotated[str, typer.Option("--dictionary", help="Of its markers.")] = "4X4_50",
+    dictionary: Annotated[
+        str, typer.Option("--dictionary", metavar="NAME", help="Of its markers.", parser=given_word)
+    ] = "4X4_50",
     measured_mm: Annotated[
         Optional[float],  # noqa: UP045
         typer.Option("--measured-mm", help="Side of a square as measured on the print."),

@@ -13,6 +13,7 @@ from app.cli.options import (
     SetOption,
     WorkersOption,
     given_path,
+    given_word,
     written_file,
 )
 
@@ -50,6 +51,7 @@ def evaluate(
             "--variant",
             metavar="NAME",
             help="A row of the tables, repeatable; 'all' for all. By default imagination, paper and authors.",
+            parser=given_word,
         ),
     ] = None,
     seeds: Annotated[
@@ -67,6 +69,7 @@ def evaluate(
             "--truth",
             metavar="NAME=VALUE",
             help="A setting of the ground-truth simulation, repeatable: object_error_m=0.005.",
+            parser=given_word,
         ),
     ] = None,
     world: Annotated[
@@ -75,11 +78,12 @@ def evaluate(
             "--world",
             metavar="NAME",
             help="A ground-truth world: bullet, mujoco or peanuts; repeatable. By default all, in turn.",
+            parser=given_word,
         ),
     ] = None,
     scheduler: Annotated[
         Optional[str],  # noqa: UP045
-        typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster."),
+        typer.Option("--scheduler", metavar="ADDRESS", help="Compute on a Dask cluster.", parser=given_word),
     ] = None,
     workers: WorkersOption = None,
     preset: PresetOption = None,
@@ -144,7 +148,12 @@ def tune(
     objects: ObjectsArgument,
     out: Annotated[
         str,
-        typer.Option("--out", metavar="PRESET", help="A preset's file, or a name: then it is one of yours."),
+        typer.Option(
+            "--out",
+            metavar="PRESET",
+            help="A preset's file, or a name: then it is one of yours.",
+            parser=given_word,
+        ),
     ],
     labels: LabelsOption = None,
     source: InputOption = "scan",
@@ -160,6 +169,7 @@ def tune(
             "--parameter",
             metavar="NAME[=LOW:HIGH]",
             help="Fit this one, repeatable, in this range (SI units).",
+            parser=given_word,
         ),
     ] = None,
     spills: Annotated[
@@ -191,10 +201,12 @@ def tune(
     """Fit parameters and the threshold to labelled objects, and keep them as a preset."""
     if spills is not None and truth_spills is not None:
         raise typer.BadParameter("give either --spills or --spills-from-truth")
+    from app.cli.evaluation_commands import preset_path
     from app.cli.evaluation_commands import tune as tune_and_print
     from app.cli.parameters import Choices
     from app.operations.tuning import tuning_request
 
+    path = preset_path(out)  # refused now, not after the fit
     start = Choices(preset or "default", settings or [], seed).parameters(objects)
     request = tuning_request(
         objects,
@@ -208,4 +220,4 @@ def tune(
         are_spills_to_come=truth_spills is not None,
         all_objects=is_all,
     )
-    tune_and_print(request, out, truth_spills, workers)
+    tune_and_print(request, path, truth_spills, workers)

@@ -13,6 +13,7 @@ from types import FrameType
 from rich.console import Console
 from rich.table import Table
 
+from app.cli.options import given_path, written_file
 from app.cli.parameters import named_values, short
 from app.cli.terminal import TerminalReporter
 from app.library.places import preset_file
@@ -33,6 +34,7 @@ from core.evaluation.pages.comparison import write_comparison
 from core.evaluation.tables import text_tables
 from core.evaluation.trials import measure_word
 from core.evaluation.verdicts import measure_by
+from core.formats import excerpt
 from core.imagination.imagination import WORKER_MODULE
 from core.parameters import flatten
 from core.session import explained
@@ -102,13 +104,12 @@ def cluster(workers: int | None, port: int) -> None:
         stopped.wait()
 
 
-def tune(request: TuningRequest, out: str, truth_spills: Path | None, workers: int | None) -> None:
+def tune(request: TuningRequest, path: Path, truth_spills: Path | None, workers: int | None) -> None:
     """Fit, print the best so far on the way, and write the preset.
 
     Raises:
         PoursightError: something given cannot be used, or nothing was found before it was stopped.
     """
-    path = _preset_path(out)
     with WorkerPool(workers) as pool, TerminalReporter() as reporter:
         pool.start(WORKER_MODULE)
         if truth_spills is not None:
@@ -126,21 +127,22 @@ def tune(request: TuningRequest, out: str, truth_spills: Path | None, workers: i
     print(f"Preset: {path}")
 
 
-def _preset_path(out: str) -> Path:
-    """Where the preset goes: a bare name is one of the user's presets, anything else a file.
+def preset_path(out: str) -> Path:
+    """Return where a preset goes: a bare name is one of the user's presets, anything else a file.
 
     Raises:
-        InputError: the name is not possible, or there is no such folder.
+        InputError: the name is not possible, or no file of that name can be written.
+        SessionError: the folder of the user's presets cannot be made.
     """
     path = Path(out)
     if path.name == out and path.suffix != ".json":
-        return preset_file(out)
-    path = path if path.suffix == ".json" else path.with_name(f"{path.name}.json")
-    if not path.parent.is_dir():
+        return written_file(str(preset_file(out)))
+    if not given_path(out).parent.is_dir():
         raise InputError(
-            f"There is no folder {path.parent} to write the preset to; make it, or name another."
+            f"There is no folder {excerpt(path.parent)} to write the preset to; make it, or name another."
         )
-    return path
+    is_whole = path.suffix == ".json" or not path.name.strip(".")  # a folder's name, which is refused
+    return written_file(out if is_whole else f"{path}.json")
 
 
 def _print_step(measure: str, step: ContainabilityStep | PourStep) -> None:

@@ -7,6 +7,8 @@ from typing import Annotated, Literal, Optional
 
 import typer
 
+from app.cli.options import given_path, given_word
+
 objects = typer.Typer(help="Labelled objects made by code.", rich_markup_mode=None)
 
 
@@ -17,10 +19,15 @@ def _commands() -> None:
 
 @objects.command()
 def make(
-    folder: Annotated[Path, typer.Argument(metavar="DIR", help="A new folder, for 'poursight evaluate'.")],
+    folder: Annotated[
+        Path,
+        typer.Argument(metavar="DIR", help="A new folder, for 'poursight evaluate'.", parser=given_path),
+    ],
     family: Annotated[
         Optional[list[str]],  # noqa: UP045
-        typer.Option("--families", metavar="NAME", help="A family, repeatable; by default all."),
+        typer.Option(
+            "--families", metavar="NAME", help="A family, repeatable; by default all.", parser=given_word
+        ),
     ] = None,
     half: Annotated[
         Optional[Literal["development", "judging"]],  # noqa: UP045

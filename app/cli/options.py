@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share, and the one place where paths enter."""
+"""Arguments and options that several commands share, and the one place where paths and words enter."""
 
 from __future__ import annotations
 
@@ -11,10 +11,40 @@ from typing import Annotated
 import typer
 
 from core.errors import InputError
+from core.files import check_writable
 from core.formats import excerpt, is_text
 
 _MISSING = {errno.ENOENT, errno.ENOTDIR}
 """The commands themselves say what they miss."""
+STDOUT = Path("-")
+
+
+def given_text(text: str) -> str:
+    """Return what was typed for people to read, perhaps nothing.
+
+    Raises:
+        InputError: it is not UTF-8, which no file could hold, or has signs that are no writing.
+    """
+    if not is_text(text) or not "".join(text.split()).isprintable():
+        raise InputError(
+            f"The text '{_shown(text)}' is not UTF-8, or has signs that cannot be shown; type it anew."
+        )
+    return text
+
+
+def given_word(text: str) -> str:
+    """Return a word that was typed: a name, an address, or a setting; the commands know which there are.
+
+    Raises:
+        InputError: it is empty, longer than a line, not UTF-8, or has signs that cannot be shown.
+    """
+    if not text.strip():
+        raise InputError("A name or a value is empty; type one, or leave its option out.")
+    if not is_text(text) or not text.isprintable():
+        raise InputError(
+            f"'{_shown(text)}' is not UTF-8, or has signs that cannot be shown; type it on one line."
+        )
+    return text
 
 
 def given_path(text: str) -> Path:
@@ -24,7 +54,7 @@ def given_path(text: str) -> Path:
         InputError: no program could use it: it is empty, too long or not UTF-8, it leads through a folder
             that may not be entered, or to a pipe or a device.
     """
-    if not text:
+    if not text.strip():
         raise InputError("A path is empty; name a file or a folder.")
     if not is_text(text) or not text.isprintable():
         raise InputError(
@@ -58,9 +88,22 @@ def written_file(text: str) -> Path:
         raise InputError(
             f"{_shown(text)} cannot be written: its folder does not exist; make it, or name a file elsewhere."
         )
-    if not os.access(path.parent, os.W_OK | os.X_OK):
-        raise InputError(f"The folder {_shown(str(path.parent))} cannot be written; name a file elsewhere.")
+    try:
+        check_writable(path)
+    except OSError as error:
+        raise InputError(
+            f"{_shown(text)} cannot be written ({error.strerror}); name a file elsewhere."
+        ) from error
     return path
+
+
+def written_answer(text: str) -> Path:
+    """Return a file to be written, as `written_file` does, or `STDOUT`.
+
+    Raises:
+        InputError: as in `written_file`.
+    """
+    return STDOUT if text == str(STDOUT) else written_file(text)
 
 
 def _shown(text: str) -> str:
@@ -87,11 +130,18 @@ PourCellOption = Annotated[
 ]
 PresetOption = Annotated[
     str | None,
-    typer.Option("--preset", metavar="P", help="default, paper, authors, or a preset file."),
+    typer.Option(
+        "--preset", metavar="P", help="default, paper, authors, or a preset file.", parser=given_word
+    ),
 ]
 SetOption = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter; see 'poursight parameters'."),
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Set a parameter; see 'poursight parameters'.",
+        parser=given_word,
+    ),
 ]
 SeedOption = Annotated[int | None, typer.Option("--seed", help="Seed of all randomness.")]
 WorkersOption = Annotated[

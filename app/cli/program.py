@@ -21,6 +21,9 @@ from app.cli.options import (
     SetOption,
     WorkersOption,
     given_path,
+    given_text,
+    given_word,
+    written_answer,
     written_file,
 )
 from app.cli.remedies import worded
@@ -78,7 +81,10 @@ def scan(
     source: Annotated[
         str | None,
         typer.Option(
-            "--object", metavar="NAME|MESH", help="In a simulated cell: a built-in object or a mesh file."
+            "--object",
+            metavar="NAME|MESH",
+            help="In a simulated cell: a built-in object or a mesh file.",
+            parser=given_word,
         ),
     ] = None,
     adaptive: Annotated[
@@ -86,7 +92,9 @@ def scan(
     ] = False,
     retake: Annotated[
         list[str] | None,
-        typer.Option("--retake", metavar="VIEW", help="Take a view of the finished scan again."),
+        typer.Option(
+            "--retake", metavar="VIEW", help="Take a view of the finished scan again.", parser=given_word
+        ),
     ] = None,
     restart: Annotated[
         bool, typer.Option("--restart", help="Discard the views of an interrupted scan.")
@@ -136,7 +144,7 @@ def imagine(
     json_file: Annotated[
         Path | None,
         typer.Option(
-            "--json", metavar="FILE", help="Write the answer there ('-': on stdout).", parser=written_file
+            "--json", metavar="FILE", help="Write the answer there ('-': on stdout).", parser=written_answer
         ),
     ] = None,
     session: Annotated[
@@ -188,7 +196,9 @@ def choose(
     session: SessionArgument,
     i: Annotated[int | None, typer.Argument(metavar="I", min=0, help="Direction, from 0.")] = None,
     j: Annotated[int | None, typer.Argument(metavar="J", min=0, help="Distance, from 0.")] = None,
-    reason: Annotated[str, typer.Option("--reason", metavar="TEXT", help="Why this one.")] = "",
+    reason: Annotated[
+        str, typer.Option("--reason", metavar="TEXT", help="Why this one.", parser=given_text)
+    ] = "",
     is_withdrawn: Annotated[bool, typer.Option("--withdraw", help="Let the program choose again.")] = False,
 ) -> None:
     """Choose another pour than the program's, and record why."""
@@ -208,7 +218,9 @@ def outcome(
     spilled: Annotated[
         int | None, typer.Option("--spilled", min=0, help="Candies that missed the object.")
     ] = None,
-    remarks: Annotated[str, typer.Option("--remarks", help="What else was seen.")] = "",
+    remarks: Annotated[
+        str, typer.Option("--remarks", metavar="TEXT", help="What else was seen.", parser=given_text)
+    ] = "",
 ) -> None:
     """Enter the outcome of the newest pour."""
     from app.cli import arm_commands
@@ -227,7 +239,10 @@ def report(session: SessionArgument, workers: WorkersOption = None) -> None:
 @app.command()
 def sessions(
     text: Annotated[
-        str, typer.Argument(metavar="TEXT", help="Only sessions that contain each of these words.")
+        str,
+        typer.Argument(
+            metavar="TEXT", help="Only sessions that contain each of these words.", parser=given_text
+        ),
     ] = "",
 ) -> None:
     """List the sessions in the library, the newest first."""
@@ -264,7 +279,9 @@ def export(
 
 @app.command()
 def demo(
-    name: Annotated[str, typer.Option("--object", metavar="NAME", help="A built-in object.")] = "mug",
+    name: Annotated[
+        str, typer.Option("--object", metavar="NAME", help="A built-in object.", parser=given_word)
+    ] = "mug",
     out: Annotated[
         Path | None,
         typer.Option(
@@ -320,11 +337,17 @@ def doctor(
 @app.command("ur-controller")
 def ur_controller(
     address: Annotated[
-        str, typer.Option("--address", metavar="ADDRESS", help="On loopback: 127.x.y.z.")
+        str,
+        typer.Option("--address", metavar="ADDRESS", help="On loopback: 127.x.y.z.", parser=given_word),
     ] = "127.0.0.1",
-    model: Annotated[str, typer.Option("--model", metavar="MODEL", help="UR5 or UR5e.")] = "UR5",
+    model: Annotated[
+        str, typer.Option("--model", metavar="MODEL", help="UR5 or UR5e.", parser=given_word)
+    ] = "UR5",
     version: Annotated[
-        str, typer.Option("--version", metavar="V", help="PolyScope: 3.15 (125 Hz) or 5.11 (500 Hz).")
+        str,
+        typer.Option(
+            "--version", metavar="V", help="PolyScope: 3.15 (125 Hz) or 5.11 (500 Hz).", parser=given_word
+        ),
     ] = "3.15",
     speed_up: Annotated[
         float, typer.Option("--speed-up", min=0.1, max=20, help="How much faster than the clock it runs.")
@@ -332,7 +355,10 @@ def ur_controller(
     fault: Annotated[
         list[str] | None,
         typer.Option(
-            "--fault", metavar="LINE", help="Such as 'in 5 protective stop', 'when moving link drop'."
+            "--fault",
+            metavar="LINE",
+            help="Such as 'in 5 protective stop', 'when moving link drop'.",
+            parser=given_word,
         ),
     ] = None,
 ) -> None:

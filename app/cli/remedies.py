@@ -20,8 +20,18 @@ REMEDIES = {
     Remedy.POUR_ANYWAY: "Add --anyway to pour all the same.",
     Remedy.SCAN_THE_MESH: "'poursight scan --object MESH --session DIR' scans it in the simulated cell.",
 }
+LONGEST_SENTENCE = 300
+_LONGEST_WORD, _LONGEST_START, _LONGEST_END = 80, 20, 57
 
 
 def worded(error: PoursightError) -> str:
-    """Return what went wrong and what to type about it, in one line."""
-    return str(error) if error.remedy is None else f"{error} {REMEDIES[error.remedy]}"
+    """Return what went wrong and what to type about it, in one line; of very long paths the ends."""
+    said = str(error) if error.remedy is None else f"{error} {REMEDIES[error.remedy]}"
+    if len(said) > LONGEST_SENTENCE:
+        said = " ".join(_shortened(word) for word in said.split())
+    return said if len(said) <= LONGEST_SENTENCE else f"{said[: LONGEST_SENTENCE - 3]}..."
+
+
+def _shortened(word: str) -> str:
+    """The end of a path says more than its middle."""
+    return word if len(word) <= _LONGEST_WORD else f"{word[:_LONGEST_START]}...{word[-_LONGEST_END:]}"

@@ -13,19 +13,21 @@ from rich.console import Console
 from rich.table import Table
 
 from app.cli.operators import PrintingOperator, TerminalOperator
+from app.cli.options import STDOUT
 from app.cli.parameters import NOTHING_CHOSEN, Choices
 from app.cli.terminal import TerminalReporter, working
-from app.library.exchange import export_html, export_pdf, export_zip
+from app.library.exchange import check_target, export_html, export_pdf, export_zip
 from app.library.index import Library
 from app.library.places import sessions_folder
 from app.library.summary import PourScore, SessionSummary
 from app.operations import pouring
 from app.operations.ahead import computing_ahead
 from app.operations.scan_run import ScanRequest
-from app.operations.scanning import scan_object
+from app.operations.scanning import is_mesh_file, scan_object
 from app.operations.session import bring_report_up_to_date
 from core.errors import InputError, NotAdvised
 from core.files import write_json
+from core.formats import excerpt
 from core.imagination.advice import advice_against
 from core.imagination.amount.result import amount_text
 from core.imagination.imagination import Imagination
@@ -62,6 +64,8 @@ def scan(
 ) -> None:
     """Scan an object in a cell, with a real arm after a confirmation; say whether the scan is good enough."""
     settings = read_cell(cell_file or SIMULATED_CELL)
+    if source is not None:
+        is_mesh_file(source)  # an unknown name is refused before anything is started
     terminal = TerminalReporter()
     operator = PrintingOperator(session) if is_confirmed else TerminalOperator(session, terminal)
     with working(session, choices, workers, terminal=terminal) as pipeline:
@@ -101,7 +105,7 @@ def imagine(
                 pipeline.import_mesh(source)
             result = pipeline.imagination()
             table = answer_table(result, pipeline.parameters)
-    if json_file is not None and str(json_file) == "-":
+    if json_file is not None and json_file == STDOUT:
         json.dump(table, sys.stdout, indent=2)
         print()
         return
@@ -147,7 +151,8 @@ def sessions(text: str) -> None:
     if text:
         found = library.search(text)
     if not found:
-        print(f"No sessions{f' with {text!r}' if text else ''} in {sessions_folder()}.", file=sys.stderr)
+        wanted = f" with '{excerpt(text)}'" if text else ""
+        print(f"No sessions{wanted} in {sessions_folder()}.", file=sys.stderr)
         return
     table = Table(*_COLUMNS, box=None, pad_edge=False)
     table.columns[-1].overflow = "fold"  # a path that is cut off is of no use
@@ -169,6 +174,8 @@ def export(
 ) -> None:
     """Export a session as each of the files that are named; its report is rewritten if it is out of date."""
     folder = Session.open(session).path
+    for target in filter(None, (html, pdf, zip_file)):
+        check_target(target, overwrite)  # refused now, not after the report was rendered
     with WorkerPool(1) as pool, TerminalReporter() as terminal:
         if (html or pdf) and (path := bring_report_up_to_date(folder, terminal, workers)):
             print(f"Report: {path}")

@@ -176,7 +176,7 @@ def _written_whole(target: Path, overwrite: bool) -> Iterator[Path]:
     target = target.absolute()
     unfinished = target.with_name(f".{target.name}.part")
     try:
-        _check_target(target, overwrite)
+        check_target(target, overwrite)
         try:
             yield unfinished
             unfinished.replace(target)
@@ -188,7 +188,12 @@ def _written_whole(target: Path, overwrite: bool) -> Iterator[Path]:
         ) from error
 
 
-def _check_target(target: Path, overwrite: bool) -> None:
+def check_target(target: Path, overwrite: bool) -> None:
+    """Refuse what an export must not replace, or cannot be written to.
+
+    Raises:
+        InputError: it is a folder, lies in none, or exists and is not to be overwritten.
+    """
     if target.is_dir():
         raise InputError(f"{target} is a folder; name a file in it.")
     if not target.parent.is_dir():

@@ -11,6 +11,7 @@ from pathlib import Path
 from platformdirs import user_cache_path, user_config_path, user_documents_path
 
 from core.errors import InputError
+from core.files import is_file
 from core.parameters import PRESET_NAMES
 from core.session import explained
 
@@ -87,4 +88,4 @@ def named_preset(name: str) -> str:
     if name in PRESET_NAMES or not name.strip():
         return name
     path = presets_folder() / f"{slug(name)}.json"
-    return str(path) if path.is_file() and not Path(name).is_file() else name
+    return str(path) if path.is_file() and not is_file(Path(name)) else name

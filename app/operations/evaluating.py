@@ -20,13 +20,14 @@ from core.evaluation.evaluation import (
     EvaluatedObject,
     Evaluation,
     digest_of,
-    read_trial,
+    kept_trial,
     trial_file,
     write_trial,
 )
 from core.evaluation.labels import LabelledObject, read_labels
 from core.evaluation.variants import Variant
 from core.files import make_folder, write_whole
+from core.formats import excerpt
 from core.parameters import Parameters, flatten
 from core.progress import Reporter
 from core.session import explained
@@ -119,7 +120,7 @@ class PreparedObject:
         """
         if Path(one.name).name != one.name:
             raise InputError(
-                f"The labels name an object '{one.name}', which cannot be a file's name; rename it."
+                f"The labels name an object '{excerpt(one.name)}', which cannot be a file's name; rename it."
             )
         try:
             content, problem = one.mesh.read_bytes(), ""
@@ -258,7 +259,7 @@ class _Run:
     def _is_kept(self, one: PreparedObject, seed: int, variant: Variant) -> bool:
         """Whether the trial is done; what was made of another input is removed, lest it be taken for it."""
         path, key = self._place(one, seed, variant)
-        trial = read_trial(path, key)
+        trial = kept_trial(path, key)
         if trial is None or trial.problem:
             path.unlink(missing_ok=True)
             return False

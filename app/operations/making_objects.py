@@ -34,11 +34,11 @@ def make_objects(folder: Path, families: Sequence[Family], n: int, seed: int, re
         SessionError: the disk is full or the folder may not be written.
         Cancelled: on request; the folder has no labels then.
     """
-    make_folder(folder)
-    if any(folder.iterdir()):
-        raise InputError(f"{folder} holds something already; name a new folder for the objects.")
     rows = []
     with explained(folder):
+        make_folder(folder)
+        if any(folder.iterdir()):
+            raise InputError(f"{folder} holds something already; name a new folder for the objects.")
         (folder / MESHES_FOLDER).mkdir()
         for done, one in enumerate(members(families, n, seed)):
             reporter.raise_if_cancelled()

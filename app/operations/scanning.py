@@ -13,6 +13,8 @@ from app.library.session_folder import UNFINISHED_SCAN
 from app.operations.arm import connected
 from app.operations.scan_run import ScanObserver, ScanOperator, ScanRequest, ScanRun, Watch
 from core.errors import InputError, StageError
+from core.files import is_file
+from core.formats import excerpt
 from core.progress import Reporter
 
 if TYPE_CHECKING:
@@ -192,12 +194,30 @@ def object_mesh(source: str, reporter: Reporter) -> TriangleMesh:
         InputError: there is no such object, or the file cannot be used.
     """
     from core.mesh_file import read_mesh
+    from hardware.simulation.objects import builtin_object
+
+    if is_mesh_file(source):
+        return read_mesh(Path(source), reporter)
+    return builtin_object(source)
+
+
+def is_mesh_file(source: str) -> bool:
+    """Return whether an object is named by its file; otherwise it is a built-in one.
+
+    Raises:
+        InputError: there is neither; what is wrong with a file is not known before it is read.
+    """
     from hardware.simulation.objects import BUILTIN_OBJECTS, builtin_object
 
+    if source in BUILTIN_OBJECTS:
+        return False
     path = Path(source)
-    if source in BUILTIN_OBJECTS or not (path.suffix or path.exists()):
-        return builtin_object(source)
-    return read_mesh(path, reporter)
+    if is_file(path):
+        return True
+    if path.suffix or path.name != source:
+        raise InputError(f"There is no mesh file {excerpt(source)}; check the name.")
+    builtin_object(source)  # which says what there is
+    return False
 
 
 def _origin(

@@ -27,6 +27,7 @@ from core.evaluation.fitting.search import FitResult
 from core.evaluation.fitting.spills import SpillMeasurement, read_spills, write_spills
 from core.evaluation.labels import LabelledObject, objects_to_fit, read_labels
 from core.evaluation.verdicts import measure_by
+from core.formats import excerpt
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
 from core.workers import TaskRunner
@@ -229,7 +230,7 @@ def _spilled_objects(
     known = {one.name: one for one in objects}
     unknown = next((one.name for one in spills if one.name not in known), None)
     if unknown is not None:
-        raise InputError(f"Spills of '{unknown}' are given, but the labels name no such object.")
+        raise InputError(f"Spills of '{excerpt(unknown)}' are given, but the labels name no such object.")
     names = dict.fromkeys(one.name for one in spills)
     return tuple(known[name] for name in names)
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from core.errors import InputError
+from core.formats import excerpt
 from core.geometry import AnyArray, FloatArray
 
 DICTIONARIES = ("4X4_50", "4X4_100", "5X5_50", "5X5_100", "6X6_50", "6X6_100")
@@ -50,7 +51,7 @@ class BoardSpec:
         """
         if self.dictionary not in DICTIONARIES:
             raise InputError(
-                f"There is no dictionary '{self.dictionary}' of markers; take one of "
+                f"There is no dictionary '{excerpt(self.dictionary)}' of markers; take one of "
                 f"{', '.join(DICTIONARIES)}."
             )
         if not (MIN_SQUARES <= self.columns <= MAX_SQUARES and MIN_SQUARES <= self.rows <= MAX_SQUARES):

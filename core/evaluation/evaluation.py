@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +18,11 @@ from core.errors import SessionError
 from core.evaluation.labels import Label, LabelledObject
 from core.evaluation.trials import FIRST_WORLD, Trial
 from core.files import read_json, write_json
+from core.formats.evaluations import Evaluation as EvaluationTable
+from core.formats.evaluations import TrialFile
 
 EVALUATION_FILE, TRIALS_FOLDER, PICTURES_FOLDER = "evaluation.json", "trials", "pictures"
+_REMEDY = "evaluate into the same folder again, which makes it anew."
 
 
 @dataclass(frozen=True)
@@ -111,26 +114,20 @@ class Evaluation:
         """Read an evaluation with all trials that are done.
 
         Raises:
-            SessionError: there is none, or it was written by another version of the program.
+            SessionError: there is none, or it or a trial is damaged.
         """
-        table = read_json(folder / EVALUATION_FILE)
-        try:
-            table["objects"] = tuple(EvaluatedObject(**one) for one in table["objects"])
-            for name in ("seeds", "variants", "worlds"):
-                table[name] = tuple(table.get(name, (FIRST_WORLD,)))
-            known = cls(**table)
-        except (KeyError, TypeError) as error:
-            raise SessionError(
-                f"{folder / EVALUATION_FILE} was written by another version of the program ({error}); "
-                "evaluate into another folder."
-            ) from error
-        trials = (
-            read_trial(trial_file(folder, one.name, seed, variant))
+        table = _read(folder / EVALUATION_FILE, EvaluationTable)
+        table["objects"] = tuple(EvaluatedObject(**one) for one in table["objects"])
+        for name in ("seeds", "variants", "worlds"):
+            table[name] = tuple(table.get(name, (FIRST_WORLD,)))
+        known = cls(**table)
+        places = (
+            trial_file(folder, one.name, seed, variant)
             for variant in known.variants
             for one in known.objects
             for seed in known.seeds
         )
-        return cls(**{**known.__dict__, "trials": tuple(trial for trial in trials if trial is not None)})
+        return replace(known, trials=tuple(read_trial(path)[0] for path in places if path.exists()))
 
 
 def trial_file(folder: Path, name: str, seed: int, variant: str) -> Path:
@@ -145,15 +142,33 @@ def write_trial(folder: Path, trial: Trial, key: str) -> None:
     write_json(path, {"key": key, "trial": trial.to_table()})
 
 
-def read_trial(path: Path, key: str | None = None) -> Trial | None:
-    """Read a trial; none if it is not there, cannot be used, or has another key than the one given."""
+def read_trial(path: Path) -> tuple[Trial, str]:
+    """Read a trial, and the key of what it depended on.
+
+    Raises:
+        SessionError: the file is missing or damaged.
+    """
+    table = _read(path, TrialFile)
+    trial = Trial.from_table(table["trial"])
+    if path.name != trial_file(path, trial.name, trial.seed, trial.variant).name:
+        raise SessionError(f"{path} is damaged (it holds another trial); {_REMEDY}")
+    return trial, table["key"]
+
+
+def kept_trial(path: Path, key: str) -> Trial | None:
+    """Read a trial; none if it is not there, cannot be used, or has another key: then it is made anew."""
     try:
-        table = read_json(path)
-        if key is not None and table["key"] != key:
-            return None
-        return Trial.from_table(table["trial"])
-    except (SessionError, KeyError, TypeError, ValueError, IndexError):
+        trial, found = read_trial(path)
+    except SessionError:
         return None
+    return trial if found == key else None
+
+
+def _read(path: Path, kind: type) -> dict[str, Any]:
+    try:
+        return read_json(path, kind)
+    except SessionError as error:
+        raise SessionError(f"{str(error).rstrip('.')}; {_REMEDY}") from error
 
 
 def digest_of(facts: Mapping[str, Any]) -> str:

@@ -94,7 +94,9 @@ def read_labels(folder: Path, labels: Path | None = None) -> tuple[LabelledObjec
     objects = tuple(_object(folder, row, _text(row, "id"), _label(path, row)) for row in rows)
     ((name, times),) = Counter(one.name for one in objects).most_common(1)
     if times > 1:
-        raise InputError(f"The labels {path} name the object '{name}' twice; leave one of the rows out.")
+        raise InputError(
+            f"The labels {path} name the object '{excerpt(name)}' twice; leave one of the rows out."
+        )
     return objects
 
 

@@ -212,7 +212,7 @@ class Figures:
             count
             for trial in self._container_trials
             if not trial.is_declined
-            for one, count in zip(trial.worlds, trial.spilled, strict=True)
+            for one, count in zip(trial.worlds, trial.spilled, strict=bool(trial.worlds))
             if one == world
         ]
         return Share(sum(count == 0 for count in counts), len(counts))

@@ -162,14 +162,10 @@ class Trial(Scored):
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Trial:
-        """Read what `to_table` gave.
-
-        Raises:
-            TypeError: something is missing or not known.
-        """
+        """Read what `to_table` gave, once it is what `core.formats` says."""
         values = dict(table)
         choice = values.get("choice")
-        values["choice"] = None if choice is None else (int(choice[0]), int(choice[1]))
+        values["choice"] = None if choice is None else tuple(choice)
         values.setdefault("worlds", [FIRST_WORLD] * len(values.get("spilled", ())))
         values |= {name: tuple(values.get(name, ())) for name in ("worlds", "spilled", "in_cup")}
         return cls(**values)

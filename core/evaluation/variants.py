@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from core.errors import InputError
+from core.formats import excerpt
 from core.parameters import Parameters, apply_settings, load_preset
 from core.parameters.settings import nearest
 
@@ -82,8 +83,9 @@ def variants_of(names: Sequence[str]) -> tuple[Variant, ...]:
     known = [*VARIANTS, "all"]
     unknown = next((name for name in names if name not in known), None)
     if unknown is not None:
+        said = excerpt(unknown)
         raise InputError(
-            f"There is no variant '{unknown}'; did you mean '{nearest(unknown, known)}'? "
+            f"There is no variant '{said}'; did you mean '{nearest(said, known)}'? "
             f"Known are {', '.join(known)}."
         )
     return tuple(one for name, one in VARIANTS.items() if name in names or "all" in names)

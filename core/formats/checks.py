@@ -9,6 +9,8 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
+from core.formats.evaluations import Evaluation, TrialFile, check_evaluation, check_trial
+from core.formats.scans import Views, check_views
 from core.formats.tables import (
     Amount,
     Capacity,
@@ -132,4 +134,7 @@ _CHECKS: Mapping[type, Callable[[Any], None]] = {
     Pours: _check_pours,
     Risk: _check_risk,
     Motions: _check_motions,
+    Evaluation: check_evaluation,
+    TrialFile: check_trial,
+    Views: check_views,
 }

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import TypeVar
 
 from core.errors import InputError
+from core.formats import excerpt
 from hardware.cameras.openni import OpenNICamera
 from hardware.cameras.realsense import RealSenseCamera
 from hardware.cameras.replay import ReplayCamera
@@ -106,8 +107,8 @@ def scan_devices(settings: CellSettings, world: World | None, seed: int) -> tupl
 
 def _unknown_kind(device: str, kind: str, known: Iterable[str]) -> InputError:
     return InputError(
-        f"There is no driver for a {device} of kind '{kind}' here; choose one of {', '.join(known)} in the "
-        "cell file."
+        f"There is no driver for a {device} of kind '{excerpt(kind)}' here; choose one of {', '.join(known)} "
+        "in the cell file."
     )
 
 

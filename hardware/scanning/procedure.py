@@ -10,6 +10,7 @@ from threading import Event
 import numpy as np
 
 from core.errors import MotionError, Remedy, StageError
+from core.formats import excerpt
 from core.geometry import FloatArray
 from core.progress import Reporter
 from core.quality.cavity import empty_coarse_volume, fuse_coarsely
@@ -152,7 +153,8 @@ class ScanProcedure:
         known = {record.view.name: k for k, record in enumerate(self.records)}
         for name in names:
             if name not in known:
-                raise StageError(f"The scan has no view '{name}'; its views are {', '.join(known)}.")
+                names = excerpt(", ".join(known))
+                raise StageError(f"The scan has no view '{excerpt(name)}'; its views are {names}.")
         self._moving.prepare([self.records[known[name]].view for name in names])
         for name in names:
             self._control.wait_while_paused(self._reporter)

@@ -7,14 +7,13 @@ disk can be continued.
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from core.errors import Remedy, SessionError
 from core.files import read_json, write_json
+from core.formats.scans import Views
 from core.progress import Reporter
 from core.scan import RgbdFrame, Scan, read_scan, write_camera, write_frame
 from core.scan.authors_layout import ENDINGS, FRAMES_FOLDER
@@ -38,7 +37,7 @@ class ScanStore:
         self.folder = folder
         self._origin = origin
         self._camera: Intrinsics | None = None
-        self._plan = read_plan(folder)
+        self._plan: ScanPlan | None = None
 
     @property
     def has_begun(self) -> bool:
@@ -50,7 +49,12 @@ class ScanStore:
         """From where the scan is taken; none before that is planned, nor in scans of before there were plans.
 
         It is written with the views.
+
+        Raises:
+            SessionError: the file is damaged.
         """
+        # Not read before: whoever discards the views need not be able to read them.
+        self._plan = self._plan or read_plan(self.folder)
         return self._plan
 
     @plan.setter
@@ -68,7 +72,8 @@ class ScanStore:
             self.folder.mkdir(parents=True, exist_ok=True)
         if not self.has_begun:
             return []
-        table = read_json(self.folder / VIEWS_FILE)
+        table = _read(self.folder)
+        self._plan = self._plan or _plan(table)
         records = _records(table)
         if table.get("origin") != self._origin:
             n_taken = sum(record.has_image for record in records)
@@ -103,7 +108,7 @@ class ScanStore:
             shutil.copytree(
                 finished, self.folder, ignore=shutil.ignore_patterns(RECORD_FILE, "warnings.json")
             )
-        self._plan = read_plan(self.folder)
+        self._plan = None
 
     def publish(self, stage: Path) -> None:
         """Copy everything into a stage's empty folder."""
@@ -149,7 +154,7 @@ def read_views(folder: Path) -> list[ViewRecord]:
     """
     if not (folder / VIEWS_FILE).exists():
         return []
-    return _records(read_json(folder / VIEWS_FILE))
+    return _records(_read(folder))
 
 
 def read_origin(folder: Path) -> dict[str, Any]:
@@ -160,8 +165,8 @@ def read_origin(folder: Path) -> dict[str, Any]:
     """
     if not (folder / VIEWS_FILE).exists():
         return {}
-    origin = read_json(folder / VIEWS_FILE).get("origin")
-    return origin if isinstance(origin, dict) else {}
+    origin: dict[str, Any] = _read(folder).get("origin", {})
+    return origin
 
 
 def read_plan(folder: Path) -> ScanPlan | None:
@@ -170,17 +175,18 @@ def read_plan(folder: Path) -> ScanPlan | None:
     Raises:
         SessionError: the file is damaged.
     """
-    if not (folder / VIEWS_FILE).exists():
+    return _plan(_read(folder)) if (folder / VIEWS_FILE).exists() else None
+
+
+def _plan(table: dict[str, Any]) -> ScanPlan | None:
+    plan = table.get("plan")
+    if plan is None:
         return None
-    table = read_json(folder / VIEWS_FILE).get("plan")
-    if table is None:
-        return None
-    with _explained():
-        return ScanPlan(
-            tuple(tuple(map(float, row)) for row in table["views_rad"]),
-            crop_box(table["crop_box"]["min_m"], table["crop_box"]["max_m"]),
-            crop_box(table["keep_out"]["min_m"], table["keep_out"]["max_m"]),
-        )
+    return ScanPlan(
+        tuple(tuple(map(float, row)) for row in plan["views_rad"]),
+        crop_box(plan["crop_box"]["min_m"], plan["crop_box"]["max_m"]),
+        crop_box(plan["keep_out"]["min_m"], plan["keep_out"]["max_m"]),
+    )
 
 
 def _outcome(record: ViewRecord) -> dict[str, Any]:
@@ -188,22 +194,18 @@ def _outcome(record: ViewRecord) -> dict[str, Any]:
 
 
 def _records(table: dict[str, Any]) -> list[ViewRecord]:
-    with _explained():
-        return [
-            ViewRecord(
-                PlannedView(str(view["name"]), tuple(map(float, view["joints_rad"]))),
-                ViewState(view["state"]),
-                tuple(view["problems"]),
-            )
-            for view in table["views"]
-        ]
+    return [
+        ViewRecord(
+            PlannedView(view["name"], tuple(map(float, view["joints_rad"]))),
+            ViewState(view["state"]),
+            tuple(view["problems"]),
+        )
+        for view in table["views"]
+    ]
 
 
-@contextmanager
-def _explained() -> Iterator[None]:
+def _read(folder: Path) -> dict[str, Any]:
     try:
-        yield
-    except (IndexError, KeyError, TypeError, ValueError) as error:
-        raise SessionError(
-            f"{VIEWS_FILE} of the scan is damaged ({error!r}).", Remedy.RESTART_SCAN
-        ) from error
+        return read_json(folder / VIEWS_FILE, Views)
+    except SessionError as error:
+        raise SessionError(str(error), Remedy.RESTART_SCAN) from error

@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from core.errors import InputError
+from core.formats import excerpt
 from core.geometry import AnyArray, FloatArray
 from core.mesh import TriangleMesh
 from core.mesh_topology import join
@@ -111,9 +112,10 @@ def builtin_object(name: str) -> TriangleMesh:
         InputError: there is none of that name; the nearest is offered.
     """
     if name not in BUILTIN_OBJECTS:
-        nearest = max(BUILTIN_OBJECTS, key=lambda known: difflib.SequenceMatcher(None, name, known).ratio())
+        said = excerpt(name)
+        nearest = max(BUILTIN_OBJECTS, key=lambda known: difflib.SequenceMatcher(None, said, known).ratio())
         raise InputError(
-            f"There is no built-in object '{name}'; did you mean '{nearest}'? "
+            f"There is no built-in object '{said}'; did you mean '{nearest}'? "
             f"Known are {', '.join(BUILTIN_OBJECTS)}."
         )
     return BUILTIN_OBJECTS[name]()

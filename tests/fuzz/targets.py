@@ -44,6 +44,7 @@ from core.session.pour_runs import pour_runs
 from hardware.cell import SIMULATED_CELL, read_cell
 from hardware.simulation.pour_outcome.outcome import TableOutcome
 from tests.fuzz.calibrated_cell import damaged_calibration, prepare_calibration
+from tests.fuzz.evaluations import damaged_evaluation, prepare_evaluation
 from tests.fuzz.mutation import (
     ODD_NUMBERS,
     ODD_WORDS,
@@ -53,6 +54,7 @@ from tests.fuzz.mutation import (
     damaged_lines,
     replaced,
 )
+from tests.fuzz.unfinished_scan import damaged_unfinished_scan, prepare_unfinished_scan
 from tests.fuzz.whole_session import make_whole_session, small_scan
 
 Calls = Iterator[Callable[[], object]]
@@ -355,6 +357,7 @@ def _paths(base: Path, folder: Path, pick: Random) -> Calls:
 
 TARGETS: dict[str, Target] = {
     "scan": Target(_prepare_scan, _scan),
+    "unfinished scan": Target(prepare_unfinished_scan, damaged_unfinished_scan),
     "mesh": Target(_prepare_meshes, _mesh),
     "labels": Target(_prepare_labels, _labels),
     "spills": Target(_prepare_spills, _spills),
@@ -362,6 +365,7 @@ TARGETS: dict[str, Target] = {
     "set": Target(_nothing, _set),
     "cell": Target(_prepare_cell, _cell),
     "calibration": Target(prepare_calibration, damaged_calibration),
+    "evaluation": Target(prepare_evaluation, damaged_evaluation),
     "session": Target(_prepare_session, _session),
     "zip": Target(_prepare_zip, _zip),
     "library": Target(_prepare_library, _library),

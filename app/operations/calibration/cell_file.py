@@ -25,6 +25,10 @@ CELLS_VARIABLE = "POURSIGHT_CELLS"
 _REAL_CELL = CELL_FOLDER / "ur5_example.toml"
 _BOARD_OFF_PLATFORM_M = (0.03, -0.02, 0.004)
 _DIGITS = 9
+_LONGEST_NAME = 100
+"""Sentences name a cell."""
+_LONGEST_ADDRESS = 253
+"""Of a host in the network."""
 
 
 def cells_folder() -> Path:
@@ -64,11 +68,15 @@ def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None =
         address: of a real arm's controller.
 
     Raises:
-        InputError: the name is empty or taken.
+        InputError: the name is empty or taken, or name or address are too long.
         SessionError: the file cannot be written.
     """
     if not re.search(r"\w", name):
         raise InputError("A cell needs a name with letters or digits; type one.")
+    if len(name) > _LONGEST_NAME:
+        raise InputError(f"A cell's name has at most {_LONGEST_NAME} signs; type a shorter one.")
+    if len(address or "") > _LONGEST_ADDRESS:
+        raise InputError(f"An address has at most {_LONGEST_ADDRESS} signs; type the controller's.")
     path = cells_folder() / f"{slug(name)}.toml"
     if path.exists():
         raise InputError(f"There is a cell {path} already; choose another name.")

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 from app.operations.evaluation.engine import MAX_DEATHS, THREADS, Compute, death_sentence
 from app.operations.evaluation.trial import TrialResult, TrialTask, fault_sentence, given_up, run_trial
 from core.errors import InputError, Remedy, WorkerError
+from core.formats import excerpt
 from core.progress import Reporter
 from core.quiet import quiet
 from core.session.record import program_versions
@@ -262,7 +263,8 @@ def _result(future: Future, task: TrialTask) -> TrialResult:
 
 def _lost(address: str) -> WorkerError:
     return WorkerError(
-        f"The scheduler at {address} has gone; start it again. What is done is kept.", Remedy.CONTINUE
+        f"The scheduler at {excerpt(address)} has gone; start it again. What is done is kept.",
+        Remedy.CONTINUE,
     )
 
 
@@ -280,7 +282,7 @@ def _connected(address: str) -> Client:
             client = Client(address, timeout=_CONNECT_S, set_as_default=False)
     except (OSError, ValueError, ImportError, asyncio.TimeoutError) as error:
         raise InputError(
-            f"There is no Dask scheduler at {address} that answers ({_first_line(error)}).",
+            f"There is no Dask scheduler at {excerpt(address)} that answers ({_first_line(error)}).",
             Remedy.START_CLUSTER,
         ) from error
     try:
@@ -314,7 +316,7 @@ def _check_versions(client: Client, address: str) -> None:
 
 
 def _first_line(error: BaseException) -> str:
-    return (str(error) or type(error).__name__).splitlines()[0].rstrip(".")
+    return excerpt((str(error) or type(error).__name__).splitlines()[0].rstrip("."))
 
 
 def _started(n_workers: int, port: int) -> LocalCluster:

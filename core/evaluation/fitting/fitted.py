@@ -8,6 +8,7 @@ from math import radians
 from typing import Any
 
 from core.errors import InputError
+from core.formats import excerpt
 from core.parameters import FieldFacts, Parameters, apply_settings, describe, flatten
 from core.parameters.settings import nearest
 
@@ -147,7 +148,8 @@ def _read(text: str) -> FittedParameter:
     name, has_range, bounds = (part.strip() for part in text.partition("="))
     facts = {fact.name: fact for fact in describe()}
     if name not in facts:
-        raise InputError(f"There is no parameter '{name}'; did you mean '{nearest(name, facts)}'?")
+        said = excerpt(name)
+        raise InputError(f"There is no parameter '{said}'; did you mean '{nearest(said, facts)}'?")
     _check_use(name)
     usual = _SENSIBLE.get(name) or _by_schema(facts[name])
     if not has_range:
@@ -183,7 +185,7 @@ def _bounds(text: str, bounds: str) -> tuple[float, float]:
     try:
         found = float(low), float(high)
     except ValueError as error:
-        raise InputError(f"'{text}' has no range: write NAME=LOW:HIGH, in SI units.") from error
+        raise InputError(f"'{excerpt(text)}' has no range: write NAME=LOW:HIGH, in SI units.") from error
     if not found[0] < found[1]:
-        raise InputError(f"'{text}' has no range: LOW must be below HIGH.")
+        raise InputError(f"'{excerpt(text)}' has no range: LOW must be below HIGH.")
     return found

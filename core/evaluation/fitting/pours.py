@@ -13,6 +13,7 @@ from core.evaluation.fitting.containability import FitRequest
 from core.evaluation.fitting.fitted import parameters_of_trial, start_values
 from core.evaluation.fitting.search import FitResult, FitStep, FitTrial, PartReporter, search
 from core.evaluation.fitting.spills import SpillMeasurement
+from core.formats import excerpt
 from core.imagination.context import ImaginationContext
 from core.imagination.cup_runs import CupRuns
 from core.imagination.packing import pack_cup
@@ -138,16 +139,16 @@ class _Row:
     def of(cls, one: SpillMeasurement, targets: Mapping[str, PourTarget], parameters: Parameters) -> _Row:
         target = targets.get(one.name)
         if target is None:
-            known = ", ".join(targets) or "none"
+            known = excerpt(", ".join(targets)) or "none"
             raise InputError(
-                f"Spills of '{one.name}' are given, but no such object can be poured into here; "
+                f"Spills of '{excerpt(one.name)}' are given, but no such object can be poured into here; "
                 f"known: {known}."
             )
         n_pour = parameters.pouring.n_pour if one.n_pour is None else one.n_pour
         if one.spilled > n_pour:
             raise InputError(
-                f"{one.spilled:g} of {n_pour} candies cannot have been spilled at '{one.name}'; give the "
-                "column n_pour or set pouring.n_pour."
+                f"{one.spilled:g} of {n_pour} candies cannot have been spilled at '{excerpt(one.name)}'; "
+                "give the column n_pour or set pouring.n_pour."
             )
         plane_E = target.footprint.raised(parameters.pouring.pivot_height_m)
         pivot = pivots_m(plane_E, np.array([one.theta_rad]), np.array([one.indent_m]))[0, 0]

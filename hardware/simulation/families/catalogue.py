@@ -11,6 +11,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from core.errors import InputError
+from core.formats import excerpt
 from core.mesh import TriangleMesh
 from hardware.simulation.families import bodies, boxes, pierced, turned_over, vessels
 from hardware.simulation.families.forms import Draw
@@ -81,14 +82,17 @@ def families_of(names: Sequence[str], half: Half | None) -> tuple[Family, ...]:
     """
     for name in names:
         if name not in FAMILIES:
-            nearest = difflib.get_close_matches(name, FAMILIES, 1, 0)[0]
+            said = excerpt(name)
+            nearest = difflib.get_close_matches(said, FAMILIES, 1, 0)[0]
             raise InputError(
-                f"There is no family '{name}'; did you mean '{nearest}'? Known are {', '.join(FAMILIES)}."
+                f"There is no family '{said}'; did you mean '{nearest}'? docs/families.md names all."
             )
     chosen = [FAMILIES[name] for name in names or FAMILIES]
     kept = tuple(one for one in dict.fromkeys(chosen) if half in (None, one.half))
     if not kept:
-        raise InputError(f"None of the families {', '.join(names)} is for {half}; leave out one of the two.")
+        raise InputError(
+            f"None of the families {excerpt(', '.join(names))} is for {half}; leave out one of the two."
+        )
     return kept
 
 

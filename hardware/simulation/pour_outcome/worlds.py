@@ -10,6 +10,7 @@ from math import radians
 from typing import Any
 
 from core.errors import InputError
+from core.formats import excerpt
 from core.parameters.settings import apply_settings
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 
@@ -66,5 +67,5 @@ def worlds_with(names: Sequence[str], changes: Mapping[str, Any]) -> dict[str, O
     unknown = next((name for name in names if name not in WORLDS), None)
     if unknown is not None:
         known = ", ".join(WORLDS)
-        raise InputError(f"There is no ground-truth world '{unknown}'; there are {known}.")
+        raise InputError(f"There is no ground-truth world '{excerpt(unknown)}'; there are {known}.")
     return {name: apply_settings(WORLDS[name], changes) for name in names}

@@ -96,6 +96,7 @@ def test_what_cannot_be_asked(objects, tmp_path, refused, poursight, monkeypatch
     words = ("evaluate", objects, "--out", tmp_path / "out")
     assert "no variant 'imagine'; did you mean 'imagination'" in refused(*words, "--variant=imagine")
     assert "no Dask scheduler at tcp://127.0.0.1:9" in refused(*words, "--scheduler=tcp://127.0.0.1:9")
+    assert len(refused(*words, f"--scheduler={'x' * 5000}")) < 320
     assert "holds no labels" in refused("evaluate", tmp_path, "--out", tmp_path / "out")
     assert "comparing" not in refused("compare", tmp_path / "a", tmp_path / "b")
     assert "did you mean 'object_error_m'" in refused(*words, "--truth=object_error=0.005")

@@ -1,3 +1,4 @@
+import random
 import stat
 import zipfile
 
@@ -110,6 +111,49 @@ def test_damaged_files_are_refused(make_session, tmp_path):
     with pytest.raises(InputError):
         import_zip(tmp_path / "missing.zip", tmp_path / "root", Reporter())
     assert not (tmp_path / "root").exists() or list((tmp_path / "root").iterdir()) == []
+
+
+def refused(path, tmp_path):
+    """Import it; return the sentence. Nothing is left behind."""
+    with pytest.raises(InputError) as error:
+        import_zip(path, tmp_path / "root", Reporter())
+    assert not (tmp_path / "root").exists() or list((tmp_path / "root").iterdir()) == []
+    said = str(error.value)
+    assert len(said) <= 300 and said.endswith(".") and "\n" not in said
+    return said
+
+
+@pytest.mark.parametrize("kind", [zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2, zipfile.ZIP_DEFLATED], ids=str)
+def test_damaged_compression_is_refused(tmp_path, kind):
+    noise = bytes(random.Random(kind).randrange(256) for _ in range(4000))
+    path = tmp_path / "bad.zip"
+    with zipfile.ZipFile(path, "w", kind) as opened:
+        opened.writestr("mug/session.json", HEADER)
+        opened.writestr("mug/noise.bin", noise)
+    content = path.read_bytes()
+    assert import_zip(path, tmp_path / "whole", Reporter()).is_dir()
+    begin = content.index(b"mug/noise.bin") + len("mug/noise.bin")
+    for at in range(begin, begin + 20):  # properties, header and the beginning of the stream
+        damaged = bytearray(content)
+        damaged[at : at + 8] = bytes(sign ^ 0xFF for sign in content[at : at + 8])
+        path.write_bytes(damaged)
+        said = refused(path, tmp_path)
+        assert "can be read" in said or "cannot be unpacked" in said
+
+
+@pytest.mark.parametrize("n_bytes", [20_000_000, 2_000_000])
+def test_what_unpacks_to_far_more_than_its_size_is_refused(tmp_path, monkeypatch, n_bytes):
+    """Up to a fixed size anything may unpack; beyond that it is the ratio that counts."""
+    path = tmp_path / "bomb.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as opened:
+        opened.writestr("mug/session.json", HEADER)
+        opened.writestr("mug/large.bin", bytes(n_bytes))
+    assert n_bytes > 100 * path.stat().st_size
+    if n_bytes < 10_000_000:
+        assert import_zip(path, tmp_path / "root", Reporter()).name == "mug"
+    else:
+        monkeypatch.setattr("zipfile.ZipFile.extract", None)  # it is known before anything is unpacked
+        assert "would unpack to 20 MB, which no session of its size does" in refused(path, tmp_path)
 
 
 def test_more_than_the_disk_holds_is_refused_before_it_is_unpacked(archive, tmp_path, monkeypatch):

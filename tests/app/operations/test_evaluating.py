@@ -116,6 +116,16 @@ def test_what_failed_is_tried_again(run, objects):
     assert run()[0] == ["mug"]
 
 
+def test_what_is_damaged_is_made_anew(run, tmp_path):
+    _, first = run()
+    (tmp_path / "out" / "evaluation.json").write_text("{")
+    (tmp_path / "out" / "trials" / "bowl.0.imagination.json").write_text('{"key": 1, "trial": {}}')
+    computed, found = run()
+    assert computed == ["bowl"]
+    assert [trial.name for trial in found.trials] == ["mug", "bowl", "block"]
+    assert found.trials[0] == first.trials[0]
+
+
 def test_an_interrupted_run_is_continued(objects, tmp_path):
     out, request = tmp_path / "out", request_for(objects)
     with pytest.raises(Cancelled, match="finished trials are kept"):
