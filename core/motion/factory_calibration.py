@@ -1,7 +1,7 @@
 """An arm's own kinematics, as its factory measured them, in place of the published ones.
 
 The axes of joints 2, 3 and 4 are nearly parallel, so that a measured arm's Denavit-Hartenberg parameters may
-hold offsets of hundreds of metres that cancel each other. Its links are therefore described by how they differ
+hold offsets of hundreds of metres that cancel each other. Links are therefore described by how they differ
 from the published ones, each frame being moved along its axis and turned about it to the published one.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 
 from core.errors import MotionError
 from core.geometry import FloatArray, invert_pose
-from core.motion.arm_models import ArmModel, JointValues
+from core.motion.arm_models import ArmModel, JointValues, Row
 from core.motion.kinematics import N_JOINTS, joint_poses
 
 _MOST_M = 0.02
@@ -58,7 +58,13 @@ def calibrated(arm: ArmModel, measured: MeasuredKinematics) -> ArmModel:
         )
     if max(off_m, off_rad) < _NOTHING:
         return arm
-    return replace(arm, corrections=tuple(tuple(map(tuple, pose[:3].tolist())) for pose in corrections))
+    return replace(arm, corrections=tuple(_rows(pose) for pose in corrections.tolist()))
+
+
+def _rows(pose: list[list[float]]) -> tuple[Row, Row, Row]:
+    """The first three rows of a pose (4, 4)."""
+    first, second, third = ((x, y, z, shift) for x, y, z, shift in pose[:3])
+    return first, second, third
 
 
 def _differences(links: FloatArray, published: FloatArray) -> FloatArray:
