@@ -48,9 +48,10 @@ def calibrated(arm: ArmModel, measured: MeasuredKinematics) -> ArmModel:
     Raises:
         MotionError: they differ by more than one arm of a model does from another.
     """
-    links = joint_poses(measured.a_m, measured.d_m, measured.alpha_rad, np.array(measured.theta_rad))
-    corrections = _differences(links, joint_poses(arm.a_m, arm.d_m, arm.alpha_rad, np.zeros(N_JOINTS)))
-    off_m, off_rad = _size(corrections)
+    with np.errstate(all="ignore"):  # of numbers that are beyond all measure
+        links = joint_poses(measured.a_m, measured.d_m, measured.alpha_rad, np.array(measured.theta_rad))
+        corrections = _differences(links, joint_poses(arm.a_m, arm.d_m, arm.alpha_rad, np.zeros(N_JOINTS)))
+        off_m, off_rad = _size(corrections)
     if not (off_m <= _MOST_M and off_rad <= _MOST_RAD):
         raise MotionError(
             f"it reports links that differ by up to {off_m * 1000:.0f} mm and "

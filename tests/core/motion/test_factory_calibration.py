@@ -119,7 +119,7 @@ def test_a_longer_forearm_is_that() -> None:
         replace(published(UR5), d_m=(1e300,) * 6),
     ],
 )
-@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+@pytest.mark.filterwarnings("error")
 def test_what_no_arm_of_the_model_has_is_refused(measured: MeasuredKinematics) -> None:
     with pytest.raises(MotionError, match="from those of a UR5"):
         calibrated(UR5, measured)

@@ -8,15 +8,19 @@ import struct
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from random import Random
 
 import numpy as np
 import pytest
 
+from core.errors import MotionError
 from core.motion.arm_models import UR5, UR5E
+from core.motion.factory_calibration import calibrated
 from core.motion.kinematics import flange_pose
 from hardware.robots.ur.own_kinematics import read_kinematics
 from hardware.robots.ur.primary_interface import (
     PRIMARY_PORT,
+    ROBOT_STATE,
     DamagedPackage,
     kinematics_of,
     next_package,
@@ -26,6 +30,7 @@ from hardware.simulation.ur_controller.identity import identity
 from hardware.simulation.ur_controller.primary_server import kinematics_info, robot_state, version_message
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import within
+from tests.fuzz.mutation import damaged_bytes
 
 ADDRESS = f"127.84.{os.getpid() % 256}.7"
 JOINTS = np.array([0.2, -1.6, 1.4, -1.5, -1.5, 0.1])
@@ -87,6 +92,23 @@ def test_parts_that_are_cut_off_are_refused() -> None:
 def test_numbers_that_are_none_are_refused(value: float) -> None:
     with pytest.raises(DamagedPackage, match="no number"):
         kinematics_of(info((*A[:5], value)))
+
+
+@pytest.mark.filterwarnings("error")
+def test_damaged_bytes_are_refused_or_close_to_what_was_sent() -> None:
+    sound = version_message(identity("UR5", "3.15")) + robot_state(
+        package(0, bytes(42)), kinematics_info(UR5)
+    )
+    for seed in range(2000):
+        pick = Random(seed)
+        rest = damaged_bytes(sound, pick)
+        with suppress(DamagedPackage, MotionError):
+            while (found := next_package(rest)) is not None:
+                kind, content, rest = found
+                measured = kinematics_of(content) if kind == ROBOT_STATE else None
+                if measured is not None:
+                    apart = flange_pose(calibrated(UR5, measured), JOINTS) - flange_pose(UR5, JOINTS)
+                    assert np.abs(apart).max() < 0.4, f"seed {seed}"
 
 
 def test_the_simulated_controller_serves_them_as_real_ones_do() -> None:
