@@ -13,6 +13,7 @@ from typing import Protocol
 import numpy.typing as npt
 
 from core.geometry import FloatArray
+from core.motion.arm_models import ArmModel
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from core.scan.model import ColorImage, DepthImage, Intrinsics
@@ -102,6 +103,21 @@ class RobotState:
         return time.monotonic() - self.time_s
 
 
+@dataclass(frozen=True)
+class Kinematics:
+    """Where an arm's joints put its flange.
+
+    Attributes:
+        model: by the arm's own calibration where that is known, else as published.
+        checksum: of that calibration, as its controller has it; empty if it is not known.
+        caution: what it costs that it is not known, and what to do; empty where it costs nothing.
+    """
+
+    model: ArmModel
+    checksum: str = ""
+    caution: str = ""
+
+
 class Move(Protocol):
     """A motion under way."""
 
@@ -149,6 +165,11 @@ class Robot(_Device, Protocol):
     """
 
     name: str
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """Of the arm that is connected; before that, as published."""
+        ...
 
     def state(self) -> RobotState:
         """Return the newest state.

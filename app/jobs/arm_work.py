@@ -61,6 +61,7 @@ class ArmWork(Service):
             InputError: the cell has no arm.
         """
         from app.jobs.connected_arm import ConnectedArm
+        from app.operations.arm import warn_of_kinematics
         from hardware.cell import open_arm
 
         with self._job(reporter):
@@ -80,6 +81,7 @@ class ArmWork(Service):
             except Cancelled:
                 arm.__exit__(None, None, None)
                 raise
+            warn_of_kinematics(arm.robot, reporter)
             self._connected = ConnectedArm(arm, lambda payload: self._send(Event(payload)))
 
     def disconnect(self, reporter: JobReporter) -> None:

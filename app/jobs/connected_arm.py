@@ -327,10 +327,8 @@ def _mouth_path_m(
     moves: Sequence[PlannedMove], T_flange_cup: FloatArray, length_m: float, connected: ConnectedArm
 ) -> FloatArray:
     """The path (N, 3) of the middle of the cup's mouth while the cup is in the hand."""
-    from hardware.cell.settings import ARMS
-
     joints = [move.trajectory.joints_rad[::_SHOWN_SAMPLES] for move in moves if move.holds_cup]
     if not joints:
         return np.zeros((0, 3))
-    flanges = flange_pose(ARMS[connected.arm.settings.robot.model], np.concatenate(joints))
+    flanges = flange_pose(connected.arm.robot.kinematics.model, np.concatenate(joints))
     return np.asarray((flanges @ T_flange_cup @ np.array([0.0, 0.0, length_m, 1.0]))[:, :3])

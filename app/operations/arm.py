@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from typing import Protocol, TypeVar
 
 from core.errors import PoursightError
+from core.progress import Reporter
 from hardware.errors import DeviceError, RobotError
 from hardware.interfaces import ReadyStep, Robot
 
@@ -45,8 +46,10 @@ D = TypeVar("D", bound=_ArmDevice)
 
 
 @contextmanager
-def connected(device: D, operator: ArmOperator | None) -> Iterator[D]:
+def connected(device: D, operator: ArmOperator | None, reporter: Reporter) -> Iterator[D]:
     """Connect an arm; what is in the way is done step by step, each confirmed, if an operator is there.
+
+    Where its own kinematics could not be read, what that costs is said.
 
     Raises:
         DeviceError: it cannot be connected as it is.
@@ -63,9 +66,16 @@ def connected(device: D, operator: ArmOperator | None) -> Iterator[D]:
         operator.confirm_step(*pending)
         device.robot.take_step(pending[0])
     try:
+        warn_of_kinematics(device.robot, reporter)
         yield device
     finally:
         device.__exit__(None, None, None)
+
+
+def warn_of_kinematics(robot: Robot, reporter: Reporter) -> None:
+    """Say what it costs where a connected arm's own kinematics are not known."""
+    if robot.kinematics.caution:
+        reporter.warn(robot.kinematics.caution)
 
 
 class Recoverable(Protocol):

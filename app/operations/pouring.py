@@ -171,7 +171,7 @@ def pour(pipeline: Pipeline, settings: CellSettings, operator: Operator) -> Path
             f"{len(cups)} cups are to be poured, and nobody would fill them; pour with an operator at the "
             "arm, or pour less."
         )
-    with connected(open_arm(settings), operator) as arm:
+    with connected(open_arm(settings), operator, pipeline.reporter) as arm:
         if arm.gripper.is_closed and operator.is_present:
             # for the cell as it is: at whatever speed that run was planned
             empty_hand(Pouring(arm, prepared.cell, target, session, pipeline.reporter), operator)

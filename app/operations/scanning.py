@@ -88,7 +88,8 @@ def scan_object(
         raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
     if request.cell_file is not None and not is_replay:
         _refuse_drift(request.cell_file, pipeline.reporter, observer, operator)
-    with connected(_open(settings if observer is None else animated(settings), mesh, seed), operator) as cell:
+    opened = _open(settings if observer is None else animated(settings), mesh, seed)
+    with connected(opened, operator, pipeline.reporter) as cell:
         _take(pipeline, cell, store, request, observer, operator)
     pipeline.keep_written_scan(store.publish, origin)
     store.remove()

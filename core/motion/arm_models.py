@@ -15,6 +15,7 @@ from core.geometry import FloatArray, transform_points
 
 JointValues = tuple[float, float, float, float, float, float]
 Point = tuple[float, float, float]
+Row = tuple[float, float, float, float]
 JOINT_NAMES = ("base", "shoulder", "elbow", "wrist 1", "wrist 2", "wrist 3")
 FLANGE_LINK = 6
 
@@ -24,7 +25,8 @@ class ArmModel:
     """A six-jointed arm of the UR family, by its Denavit-Hartenberg parameters (classic convention).
 
     The base frame is the UR controller's base frame, the flange frame its tool flange with z out of the
-    flange. A real arm differs by its factory calibration, up to some millimetres.
+    flange. A real arm differs by its factory calibration, up to some millimetres: `factory_calibration` adds
+    it.
 
     Attributes:
         name: as shown to the user.
@@ -34,6 +36,8 @@ class ArmModel:
         lower_rad: (6,) lowest joint angles.
         upper_rad: (6,) highest joint angles.
         speed_limits_rad_s: (6,) highest joint speeds.
+        corrections: six small poses (4, 4), the first three rows each, that an arm's own calibration adds
+            behind each link; empty: as published.
     """
 
     name: str
@@ -43,6 +47,7 @@ class ArmModel:
     lower_rad: JointValues
     upper_rad: JointValues
     speed_limits_rad_s: JointValues
+    corrections: tuple[tuple[Row, Row, Row], ...] = ()
 
 
 def _ur_arm(name: str, a_m: JointValues, d_m: JointValues) -> ArmModel:

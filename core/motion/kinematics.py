@@ -1,5 +1,7 @@
 """Forward and inverse kinematics of UR arms, the Jacobian, and joint angles that differ by whole turns.
 
+All but `joint_poses` know an arm's own calibration; the inverse refines the published arm's solution by it.
+
 Functions of configurations take any leading shape: (6,), (N, 6), (N, 8, 6). The inverse is closed-form, all
 branches of many poses at once: shoulder left or right, wrist flipped or not, elbow up or down. The order of
 its solution (joints 1, 5, 6, then the planar arm 2, 3, 4) is the usual one for this geometry, for example
@@ -32,6 +34,10 @@ _WRIST_SINE = 1e-6
 _COSINE_TOLERANCE = 1e-9
 """A cosine this much beyond 1 is rounding at the edge of the reach, not a pose out of reach."""
 _POSE_TOLERANCE = 1e-6
+_NEWTON_STEPS = 4
+"""From the published arm's solution, millimetres away; each step about squares what is left."""
+_DAMPING = 1e-9
+"""Keeps a step near a singular configuration small, and elsewhere hardly differs from none."""
 
 
 def link_poses(arm: ArmModel, joints_rad: npt.ArrayLike) -> FloatArray:
@@ -43,7 +49,9 @@ def link_poses(arm: ArmModel, joints_rad: npt.ArrayLike) -> FloatArray:
         joints_rad: (..., 6).
     """
     joints = np.asarray(joints_rad, dtype=float)
-    steps = _joint_poses(arm.a_m, arm.d_m, arm.alpha_rad, joints)
+    steps = joint_poses(arm.a_m, arm.d_m, arm.alpha_rad, joints)
+    if arm.corrections:
+        steps = steps @ _corrections(arm)
     poses = np.empty((*joints.shape[:-1], N_JOINTS + 1, 4, 4))
     poses[..., 0, :, :] = np.eye(4)
     for k in range(N_JOINTS):
@@ -51,7 +59,14 @@ def link_poses(arm: ArmModel, joints_rad: npt.ArrayLike) -> FloatArray:
     return poses
 
 
-def _joint_poses(
+def _corrections(arm: ArmModel) -> FloatArray:
+    """The poses (6, 4, 4) that an arm's own calibration adds behind its links."""
+    poses = np.tile(np.eye(4), (N_JOINTS, 1, 1))
+    poses[:, :3] = arm.corrections
+    return poses
+
+
+def joint_poses(
     a_m: npt.ArrayLike, d_m: npt.ArrayLike, alpha_rad: npt.ArrayLike, angle_rad: FloatArray
 ) -> FloatArray:
     """Poses (..., 4, 4) of link frames in the frames before them, for Denavit-Hartenberg parameters that
@@ -152,9 +167,28 @@ def inverse_kinematics(
     undetermined = np.zeros((n, len(branches)), dtype=bool)
     for k, branch in enumerate(branches):
         joints[:, k], found[:, k], undetermined[:, k] = _branch(arm, T_base_flange, *_SIGNS[branch])
+    if arm.corrections:
+        joints[found] = _refined(arm, joints[found], T_base_flange[found.nonzero()[0]])
     found &= _reaches(arm, joints, T_base_flange)
     joints[~found] = 0
     return InverseBranches(joints, found, undetermined)
+
+
+def _refined(arm: ArmModel, joints_rad: FloatArray, T_base_flange: FloatArray) -> FloatArray:
+    """Bring the published arm's configurations (K, 6) to poses (K, 4, 4) by the arm's own kinematics."""
+    for _ in range(_NEWTON_STEPS):
+        error = _twist(flange_pose(arm, joints_rad), T_base_flange)[..., None]
+        J = jacobian(arm, joints_rad)
+        Jt = np.swapaxes(J, -1, -2)
+        step = np.linalg.solve(Jt @ J + _DAMPING * np.eye(N_JOINTS), Jt @ error)
+        joints_rad = joints_rad + step[..., 0]
+    return wrapped(joints_rad)
+
+
+def _twist(here: FloatArray, there: FloatArray) -> FloatArray:
+    """The small shift and rotation (K, 6), in the base frame, from poses (K, 4, 4) to others."""
+    turn = np.cross(here[:, :3, :3], there[:, :3, :3], axis=1).sum(axis=2) / 2
+    return np.concatenate([there[:, :3, 3] - here[:, :3, 3], turn], axis=1)
 
 
 def configurations(arm: ArmModel, T_base_flange: FloatArray) -> FloatArray:
@@ -188,7 +222,7 @@ def _branch(
     joint1, reaches_shoulder = _joint1(arm, T, shoulder)
     joint5, joint6, is_free = _joints_5_6(T, joint1, wrist)
     T_0_1, T_4_5, T_5_6 = (
-        _joint_poses(arm.a_m[k], arm.d_m[k], arm.alpha_rad[k], angle)
+        joint_poses(arm.a_m[k], arm.d_m[k], arm.alpha_rad[k], angle)
         for k, angle in ((0, joint1), (4, joint5), (5, joint6))
     )
     T_1_4 = np.linalg.inv(T_0_1) @ T @ np.linalg.inv(T_4_5 @ T_5_6)

@@ -96,7 +96,8 @@ def scan_devices(settings: CellSettings, world: World | None, seed: int) -> tupl
     """
     if settings.robot.kind == "replay":
         recorded = ReplayCamera(settings.camera.replayed)
-        return recorded, ReplayRobot(recorded, settings.camera.pose), SimulatedGripper()
+        replayed = ReplayRobot(recorded, settings.camera.pose, ARMS[settings.robot.model])
+        return recorded, replayed, SimulatedGripper()
     robot = _of_kind(_ROBOTS, "robot", settings.robot.kind)(settings)
     gripper = real_gripper(settings, robot) if isinstance(robot, UR5Robot) else SimulatedGripper()
     if world is None:

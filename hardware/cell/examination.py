@@ -16,7 +16,7 @@ from hardware.cell.cell import open_cell
 from hardware.cell.devices import real_arm, real_camera
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import ARMS, CellSettings
-from hardware.interfaces import Camera
+from hardware.interfaces import Camera, Kinematics
 from hardware.modes import unreadiness
 from hardware.simulation.world import World
 
@@ -58,9 +58,17 @@ def examine_robot(settings: CellSettings) -> Finding:
     modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}"
     agree = "are only known when it is connected" if seen.tool_offset is None else "agree"
     said = f"{subject}, controller {version}, {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
+    said = f"{said}, {_kinematics_read(arm.kinematics)}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
     return Finding("robot", said, problem)
+
+
+def _kinematics_read(kinematics: Kinematics) -> str:
+    """In words; that they are not known keeps nobody from using the arm."""
+    if kinematics.checksum:
+        return f"calibrated kinematics read (checksum {kinematics.checksum})"
+    return "calibrated kinematics not read (published ones are used, which may cost 1 to 3 mm)"
 
 
 def examine_camera(settings: CellSettings) -> Finding:

@@ -57,11 +57,16 @@ class Pouring:
     ) -> None:
         self.last_run: Path | None = None
         self._arm = arm
-        self._cell = cell
+        self._published_cell = cell
         self._target = target
         self._session = session
         self._reporter = reporter
         self._interrupted: tuple[PourPlan, tuple[PlannedMove, ...], int] | None = None
+
+    @property
+    def _cell(self) -> PourCell:
+        """With the kinematics of the arm that is connected, which is known only when it is."""
+        return replace(self._published_cell, arm=self._arm.robot.kinematics.model)
 
     @property
     def robot(self) -> Robot:

@@ -14,7 +14,7 @@ from core.motion.kinematics import flange_pose
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
-from hardware.interfaces import ReadyStep, RobotState
+from hardware.interfaces import Kinematics, ReadyStep, RobotState
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.joint_motion import JointMotion, TrajectoryMotion, checked_path
 
@@ -51,6 +51,11 @@ class KinematicRobot:
 
     def __exit__(self, *exception: object) -> None:
         self._brake()
+
+    @property
+    def kinematics(self) -> Kinematics:
+        """As published: it is built so."""
+        return Kinematics(self._arm)
 
     def state(self) -> RobotState:
         """Return where the joints are now."""

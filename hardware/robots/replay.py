@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry import FloatArray, invert_pose
+from core.motion.arm_models import ArmModel
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.cameras.replay import ReplayCamera
-from hardware.interfaces import ReadyStep, RobotState
+from hardware.interfaces import Kinematics, ReadyStep, RobotState
 from hardware.modes import RobotMode, SafetyMode
 
 
@@ -20,11 +21,13 @@ class ReplayRobot:
 
     Attributes:
         name: says that nothing moves.
+        kinematics: of the cell's model.
     """
 
-    def __init__(self, camera: ReplayCamera, T_flange_camera: FloatArray) -> None:
+    def __init__(self, camera: ReplayCamera, T_flange_camera: FloatArray, arm: ArmModel) -> None:
         """Be where the camera is where the recorded one was."""
         self.name = "arm of a recorded scan"
+        self.kinematics = Kinematics(arm)
         self._camera = camera
         self._T_camera_flange = invert_pose(T_flange_camera)
 

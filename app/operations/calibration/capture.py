@@ -204,7 +204,7 @@ def capturing(
         raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
     with ExitStack() as stack:
         shown = animated(settings) if observer.is_watching else settings
-        cell = stack.enter_context(connected(open_calibration_cell(shown, board), operator))
+        cell = stack.enter_context(connected(open_calibration_cell(shown, board), operator, reporter))
         stack.enter_context(observer.opened(cell))
         reporter.raise_if_cancelled()  # by a stop that came before there was an arm
         first = cell.camera.capture()
@@ -225,6 +225,7 @@ def capturing(
         i = first.intrinsics
         known = {
             "robot": cell.robot.name,
+            "kinematics": cell.robot.kinematics.checksum,
             "camera": cell.camera.name,
             "intrinsics": [i.fx, i.fy, i.cx, i.cy],
             "size_px": [width, height],

@@ -70,6 +70,7 @@ def refuse_misplaced(margin: MoveMargin, T_base_tool: FloatArray, T_reported: Fl
     if off_m > margin.kinematics_m:
         raise MotionError(
             f"The controller has the cup {off_m * 1000:.1f} mm from where the cell's arm model puts it, and "
-            f"the plan's clearance leaves {margin.kinematics_m * 1000:.1f} mm for that; use the arm's own "
-            "calibration in the cell file, or a larger cup_clearance_m."
+            f"the plan's clearance leaves {margin.kinematics_m * 1000:.1f} mm for that; connect the "
+            "arm again, so that its own calibration is read from its controller, or choose a larger "
+            "cup_clearance_m in the cell file."
         )

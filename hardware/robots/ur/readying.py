@@ -8,15 +8,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import ArmModel
-from hardware.errors import RobotNotReady
+from hardware.errors import ProgramStopped, RobotError, RobotNotReady
 from hardware.interfaces import ReadyStep
 from hardware.modes import RobotMode, SafetyMode
-from hardware.robots.ur.checks import refuse_other_kinematics
+from hardware.robots.ur.checks import raise_if, refuse_other_kinematics, unsafe
 from hardware.robots.ur.dashboard import Dashboard, restart_safety, switch_on, unlock
 from hardware.robots.ur.glance import Glance
+from hardware.robots.ur.messages import RUNTIME_PLAYING
+from hardware.robots.ur.motions import ARRIVED_RAD
 from hardware.robots.ur.pose_vectors import pose_from_vector
 
+RESTING_RAD_S = 0.01
 _SAFETY_RESTARTS = (SafetyMode.FAULT, SafetyMode.VIOLATION)
 
 
@@ -135,6 +139,21 @@ def must_set_voltage(seen: Glance, tool: Tool, name: str) -> bool:
             "the hand and switch the output off at the panel, or correct voltage_v."
         )
     return True
+
+
+def refuse_busy(raw: AnyArray, start_rad: FloatArray, is_moving: bool, name: str) -> None:
+    """Refuse to begin a motion at (6,) with an arm that is not ready, moves, or is elsewhere.
+
+    Raises:
+        RobotError: it is; the kind and the sentence say what.
+    """
+    raise_if(unsafe(raw))
+    if int(raw["runtime_state"]) != RUNTIME_PLAYING:
+        raise ProgramStopped(f"The control program on the {name} does not run any more; recover the robot.")
+    if is_moving or np.abs(raw["joint_speeds_rad_s"]).max() > RESTING_RAD_S:
+        raise RobotError(f"The {name} is still moving; stop it or wait until it stops.")
+    if np.abs(start_rad - raw["joints_rad"]).max() > ARRIVED_RAD:
+        raise RobotError(f"The {name} is not where the motion begins; plan it anew.")
 
 
 _OURS_ENDS_WITHIN_S = 1.0

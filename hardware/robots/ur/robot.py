@@ -11,10 +11,9 @@ from math import radians
 from threading import Lock
 from typing import Any
 
-import numpy as np
 import numpy.typing as npt
 
-from core.geometry import AnyArray, FloatArray
+from core.geometry import FloatArray
 from core.motion.arm_models import ArmModel
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
@@ -25,7 +24,7 @@ from hardware.errors import (
     RobotLost,
     RobotStopped,
 )
-from hardware.interfaces import ReadyStep, RobotState
+from hardware.interfaces import Kinematics, ReadyStep, RobotState
 from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
 from hardware.robots.ur.asking import refuse_beyond_safety, switch_tool_output
@@ -34,19 +33,20 @@ from hardware.robots.ur.checks import (
     refuse_local_control,
     refuse_other_kinematics,
     refuse_other_model,
-    unsafe,
 )
 from hardware.robots.ur.dashboard import Dashboard, make_ready
 from hardware.robots.ur.glance import Glance, glance
 from hardware.robots.ur.link import UrMove, WorkerLink
-from hardware.robots.ur.messages import RUNTIME_PLAYING, Ended, Setup, robot_state
-from hardware.robots.ur.motions import ARRIVED_RAD
+from hardware.robots.ur.messages import Ended, Setup, robot_state
+from hardware.robots.ur.own_kinematics import read_kinematics
 from hardware.robots.ur.pose_vectors import vector_from_pose
 from hardware.robots.ur.probe import probe, set_tool_voltage
 from hardware.robots.ur.readying import (
+    RESTING_RAD_S,
     Tool,
     must_set_voltage,
     next_step,
+    refuse_busy,
     refuse_foreign_program,
     refuse_other_arm,
     refuse_power_supply,
@@ -58,7 +58,6 @@ STOP_ANSWER_S = 0.1
 """A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
 _CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
 _RESTS_WITHIN_S = 0.3
-_RESTING_RAD_S = 0.01
 _DASHBOARD_STOP_S = 0.3
 _RELEASED_WITHIN_S = 0.5
 
@@ -79,6 +78,7 @@ class UR5Robot:
     Attributes:
         name: model and address, or as given.
         controller_version: of the controller's software, such as (3, 15); empty before it was connected.
+        kinematics: of the arm that was connected last, or looked at; as published before.
     """
 
     def __init__(
@@ -111,6 +111,7 @@ class UR5Robot:
         self.name = name or f"{arm.name} at {address}"
         self.controller_version: tuple[int, ...] = ()
         self._arm = arm
+        self.kinematics = Kinematics(arm)
         self._T_flange_tool = T_flange_tool
         self._tool = Tool(tool_voltage_v, (tolerance_m, tolerance_rad))
         self._address = address
@@ -133,6 +134,7 @@ class UR5Robot:
         """
         with self._command_lock:
             self._refusal = None
+            self.kinematics = Kinematics(self._arm)
             self._connect()
         return self
 
@@ -150,7 +152,7 @@ class UR5Robot:
         Raises:
             RobotLost: it is older than `link.LOST_S`, or the robot is not connected.
         """
-        return robot_state(self._connected().worker.state(), self._arm)
+        return robot_state(self._connected().worker.state(), self.kinematics.model)
 
     def move_joints(self, path_rad: npt.ArrayLike, speed_rad_s: float, acceleration_rad_s2: float) -> UrMove:
         """Start to move through joint configurations (N, 6), the first being where the arm is.
@@ -187,7 +189,7 @@ class UR5Robot:
         connection = self._connected()
         try:
             connection.worker.ask("stop", within_s=STOP_ANSWER_S)
-            if connection.worker.comes_to_rest(_RESTS_WITHIN_S, _RESTING_RAD_S):
+            if connection.worker.comes_to_rest(_RESTS_WITHIN_S, RESTING_RAD_S):
                 return
             why = "it did not come to rest"
         except RobotError as error:
@@ -310,7 +312,7 @@ class UR5Robot:
                 raw = worker.state()
                 joints_rad, tool_pose = raw["joints_rad"], raw["tool_pose"]
                 T_tool, tolerances = self._T_flange_tool, self._tool.tolerances
-                refuse_other_kinematics(joints_rad, tool_pose, self._arm, T_tool, tolerances)
+                refuse_other_kinematics(joints_rad, tool_pose, self.kinematics.model, T_tool, tolerances)
             except BaseException:
                 worker.end()
                 raise
@@ -323,8 +325,10 @@ class UR5Robot:
     def _look(self, dashboard: Dashboard) -> Glance:
         refuse_local_control(dashboard, self.name)
         refuse_other_model(dashboard, self._arm, self.name)
+        if not self.kinematics.checksum:
+            self.kinematics = read_kinematics(self._address, self._arm)
         seen = glance(self._address)
-        refuse_other_arm(seen, self._arm, self._tool)
+        refuse_other_arm(seen, self.kinematics.model, self._tool)
         refuse_power_supply(seen, self._tool, self.name)
         return seen
 
@@ -347,7 +351,8 @@ class UR5Robot:
             worker = self._connected().worker
             if self._refusal is not None:
                 raise self._refusal
-            self._refuse_unready(worker.state(), start)
+            is_moving = self._move is not None and not self._move.is_done
+            refuse_busy(worker.state(), start, is_moving, self.name)
             move = self._move = UrMove(self.name, worker.progress, self.stop)
             try:
                 worker.ask(request, *arguments)
@@ -355,18 +360,6 @@ class UR5Robot:
                 move.end(error)
                 raise self._refusal or error from error
             return move
-
-    def _refuse_unready(self, raw: AnyArray, start_rad: FloatArray) -> None:
-        raise_if(unsafe(raw))
-        if int(raw["runtime_state"]) != RUNTIME_PLAYING:
-            raise ProgramStopped(
-                f"The control program on the {self.name} does not run any more; recover the robot."
-            )
-        is_moving = self._move is not None and not self._move.is_done
-        if is_moving or np.abs(raw["joint_speeds_rad_s"]).max() > _RESTING_RAD_S:
-            raise RobotError(f"The {self.name} is still moving; stop it or wait until it stops.")
-        if np.abs(start_rad - raw["joints_rad"]).max() > ARRIVED_RAD:
-            raise RobotError(f"The {self.name} is not where the motion begins; plan it anew.")
 
     def _on_ended(self, ended: Ended) -> None:
         """A move is over. One that went wrong takes the control program with it, lest anything goes on."""

@@ -19,7 +19,7 @@
 | `dual pin power`, `single pin power` | what the tool's connector is set to |
 | `output lost`, `ignore outputs`, `heed outputs` | the tool's outputs go off; writes do nothing; do again |
 | `slider SHARE`, `model NAME` | the speed slider; another arm's kinematics |
-| `calibration MM` | the forearm is longer by this than the model's |
+| `calibration MM` | the forearm is longer by this than the published one, as the primary interface tells |
 | `jump JOINT RAD` | a joint (1 to 6) is elsewhere at once |
 | `limit JOINT LOW HIGH`, `no limits` | the safety system's, in rad; as the arm's own |
 | `force N` | something pushes at the tool |

@@ -64,8 +64,9 @@ def identity(model: str, version: str) -> Identity:
 """Where the controller listens, and where its arm is at first."""
 
 DASHBOARD_PORT = 29999
+PRIMARY_PORT = 30001
 SCRIPT_PORT = 30003
 RTDE_PORT = 30004
 CONTROL_PORT = 30099
-"""The first three are a real controller's; the last takes faults and questions."""
+"""The first four are a real controller's; the last takes faults and questions."""
 HOME_RAD = (0.0, -1.5708, 1.5708, -1.5708, -1.5708, 0.0)

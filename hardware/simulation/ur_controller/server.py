@@ -16,11 +16,13 @@ from hardware.simulation.ur_controller.identity import (
     CONTROL_PORT,
     DASHBOARD_PORT,
     HOME_RAD,
+    PRIMARY_PORT,
     RTDE_PORT,
     SCRIPT_PORT,
     Identity,
 )
 from hardware.simulation.ur_controller.link import Network
+from hardware.simulation.ur_controller.primary_server import PrimaryLink
 from hardware.simulation.ur_controller.rtde_server import Outputs, RtdeLink
 from hardware.simulation.ur_controller.text_servers import ControlLink, DashboardLink, ScriptLink
 
@@ -107,13 +109,14 @@ class ControllerServer:
             return control
         raise InputError(
             f"Nothing can listen at {wanted or 'any loopback address'} on ports {DASHBOARD_PORT}, "
-            f"{SCRIPT_PORT}, {RTDE_PORT} and {CONTROL_PORT}; end what listens there, or choose another "
-            "127.x.y.z."
+            f"{PRIMARY_PORT}, {SCRIPT_PORT}, {RTDE_PORT} and {CONTROL_PORT}; end what listens there, or "
+            "choose another 127.x.y.z."
         )
 
     async def _open(self) -> None:
         makers: list[tuple[Callable[[], asyncio.Protocol], int]] = [
             (lambda: DashboardLink(self._network, self._controller), DASHBOARD_PORT),
+            (lambda: PrimaryLink(self._network, self._controller), PRIMARY_PORT),
             (lambda: ScriptLink(self._network, self._controller), SCRIPT_PORT),
             (lambda: RtdeLink(self._network, self._controller), RTDE_PORT),
         ]

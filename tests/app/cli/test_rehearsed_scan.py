@@ -7,11 +7,17 @@ import json
 import re
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from core.motion.arm_models import UR5
+from core.motion.kinematics import flange_pose
+from core.progress import Reporter
+from core.scan import read_scan
 from hardware.cell import read_cell
+from hardware.scanning.store import read_views
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.cli.test_scan_command import COARSE, few_views
 from tests.patience import wait_until
@@ -67,6 +73,21 @@ def test_nothing_moves_without_a_confirmation(refused, words, controller, monkey
     monkeypatch.setattr("rich.console.Console.input", lambda *a, **k: "no")
     assert "nothing moved" in refused(*words)
     assert state(controller)["joints_rad"] == pytest.approx(HOME, abs=1e-9)
+
+
+def test_the_cameras_poses_are_by_the_arms_own_kinematics(poursight, words, controller, tmp_path):
+    controller.command("calibration 4.5")
+    code, _, err = poursight(*words, "--yes")
+    assert code == 0, err
+    assert "1 to 3 mm" not in err
+    longer = replace(UR5, a_m=(0.0, UR5.a_m[1], UR5.a_m[2] - 0.0045, 0.0, 0.0, 0.0))
+    folder = tmp_path / "session/scan"
+    joints_rad = [record.view.joints_rad for record in read_views(folder)]
+    taken = np.array([frame.T_base_camera for frame in read_scan(folder, Reporter()).frames])
+    np.testing.assert_allclose(taken, flange_pose(longer, joints_rad) @ read_cell().camera.pose, atol=1e-3)
+    published = flange_pose(UR5, joints_rad) @ read_cell().camera.pose
+    apart_m = np.linalg.norm((taken - published)[:, :3, 3], axis=1)
+    assert apart_m == pytest.approx(0.0045, abs=5e-4)
 
 
 def test_the_route_is_shown_and_driven_slowly_and_logged(poursight, words, controller, tmp_path):

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from core.motion.arm_models import UR5, UR5E
+from core.motion.kinematics import flange_pose
 from hardware.errors import (
     EmergencyStop,
     MoveRefused,
@@ -25,12 +26,22 @@ from hardware.errors import (
     WrongRobot,
 )
 from hardware.interfaces import ReadyStep
+from hardware.robots.ur import primary_interface
 from hardware.robots.ur.probe import DASHBOARD_PORT, DATA_PORT, SCRIPT_PORT
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import within
-from tests.hardware.robots.ur.bench import HOME, STANDS_WITHIN_S, VERSIONS, Bench, bent_way, driver
+from tests.hardware.robots.ur.bench import (
+    HOME,
+    STANDS_WITHIN_S,
+    T_FLANGE_TOOL,
+    VERSIONS,
+    Bench,
+    bent_way,
+    driver,
+)
 from tests.patience import wait_until
 
+NOBODYS_PORT = 30002
 EMPTY_ADDRESS = f"127.83.{os.getpid() % 256}.7"
 """Each test process its own: what one listens on must be empty for the other."""
 
@@ -100,6 +111,36 @@ def test_a_factory_calibration_is_tolerated_within_the_tolerance(controller: Con
     controller.command("model UR5e")
     with driver(controller.address, UR5, tolerance_m=0.2) as robot:
         assert robot.state().is_program_running
+
+
+def test_an_arms_own_kinematics_are_read_and_used() -> None:
+    with ControllerProcess(joints_rad=HOME, faults=["calibration 8"]) as controller:
+        robot = driver(controller.address)
+        assert robot.kinematics.model is UR5
+        robot.look()
+        assert robot.kinematics.checksum
+        with robot:
+            state, read = robot.state(), robot.kinematics
+            assert read.checksum
+            assert read.caution == ""
+            np.testing.assert_allclose(state.T_base_flange @ T_FLANGE_TOOL, state.T_base_tool, atol=1e-9)
+            apart_m = np.linalg.norm((flange_pose(UR5, state.joints_rad) - state.T_base_flange)[:3, 3])
+            assert apart_m == pytest.approx(0.008)
+            robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(10)
+            robot.recover()
+            assert robot.kinematics is read, "read once"
+
+
+def test_without_them_an_arm_beyond_the_tolerance_is_refused_and_another_one_cautioned(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(primary_interface, "PRIMARY_PORT", NOBODYS_PORT)
+    with ControllerProcess(joints_rad=HOME, faults=["calibration 8"]) as controller:
+        refuses(controller.address, WrongRobot, "puts the tool 8 mm")
+        controller.command("calibration 2")
+        with driver(controller.address) as robot:
+            assert robot.kinematics.model is UR5
+            assert "1 to 3 mm" in robot.kinematics.caution
 
 
 def test_an_e_series_in_local_control() -> None:
