@@ -40,6 +40,8 @@ class Remedy(Enum):
     """Start the workers that the evaluation shall use."""
     POUR_ANYWAY = "pour anyway"
     """Say explicitly that it shall be poured although it is not advised."""
+    EMPTY_HAND = "empty the hand"
+    """Bring home what a pour left in the hand, or take it and open the gripper."""
     RESTART_SCAN = "restart the scan"
     """Discard the views that were taken, and scan anew."""
 

@@ -15,6 +15,7 @@ REMEDIES = {
     Remedy.CHOOSE_OBJECT: "Name it, such as --object mug; for a real cell give --cell FILE.",
     Remedy.NO_OBJECT: "Put it there and leave out --object.",
     Remedy.OTHER_CELL: "Give another one with --cell FILE.",
+    Remedy.EMPTY_HAND: "'poursight pour SESSION' of that pour asks what is in it, and brings a cup home.",
     Remedy.RESTART_SCAN: "Run the same command with --restart to discard them.",
     Remedy.START_CLUSTER: "'poursight cluster' starts one and prints its address.",
     Remedy.POUR_ANYWAY: "Add --anyway to pour all the same.",

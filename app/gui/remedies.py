@@ -24,6 +24,7 @@ def remedy_words(remedy: Remedy | None) -> str:
         Remedy.OTHER_CELL: translate("Remedy", "Choose another cell in the menu Cell."),
         Remedy.START_CLUSTER: translate("Remedy", "Start its workers, then press Try again."),
         Remedy.POUR_ANYWAY: translate("Remedy", "Tick its box on the Robot page to pour all the same."),
+        Remedy.EMPTY_HAND: translate("Remedy", "On the Robot page bring the cup home, or open the gripper."),
         Remedy.RESTART_SCAN: translate("Remedy", "Press Start over on the Scan page to discard them."),
     }
     return "" if remedy is None else words[remedy]

@@ -161,7 +161,7 @@ class ArmWork(Service):
             connected.must_recover = False  # now, so that a stop that comes meanwhile is not forgotten
             connected.is_at_work = True
             try:
-                connected.arm.robot.recover()
+                (connected.pouring or connected.arm.robot).recover()  # a pour writes it down
             except RobotError:
                 connected.must_recover = True
                 raise

@@ -40,6 +40,7 @@ class Moving(Protocol):
 
         Raises:
             Cancelled: somebody does not want the arm to move.
+            MotionError: the hand may hold a cup.
         """
         ...
 
@@ -81,6 +82,7 @@ class WatchedMoving:
         """Plan the route from where the arm is, and let somebody confirm it; see `Moving`."""
         if not views:
             return
+        self._refuse_full_hand()
         route = plan_route(self._cell, self._watched.ready_state().joints_rad, views)
         for leg in route.legs:
             if leg.trajectory is not None:
@@ -112,6 +114,11 @@ class WatchedMoving:
         except RobotError as error:
             self._note_stop(error)
             raise
+
+    def _refuse_full_hand(self) -> None:
+        """Routes are checked without a cup, and would spill what is in it."""
+        if self._cell.gripper.is_closed:
+            raise MotionError("The gripper is closed and may hold a cup; nothing moved.", Remedy.EMPTY_HAND)
 
     def _note_stop(self, error: BaseException) -> None:
         self.was_stopped = True

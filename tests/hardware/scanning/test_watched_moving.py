@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+from core.errors import MotionError
 from core.progress import Reporter
 from hardware.errors import RobotError
 from hardware.pouring.run_log import RunLog
@@ -93,3 +94,16 @@ def test_views_beyond_the_safety_limits_are_refused_before_anything_moves(rig, m
         assert rig.is_home
     finally:
         rig.controller.command("no limits")
+
+
+def test_no_view_is_gone_to_with_a_cup_in_the_hand(rig, tmp_path):
+    view = name_views(rig.settings.scan.views_rad[:1])
+    rig.arm.gripper.close()
+    with RunLog(tmp_path / "scan") as log:
+        moving = WatchedMoving(
+            rig.arm, log, rig.reporter, lambda _: pytest.fail("nothing is to be confirmed")
+        )
+        with pytest.raises(MotionError, match="may hold a cup; nothing moved"):
+            moving.prepare(view)
+        rig.arm.gripper.open()
+    assert (tmp_path / "scan" / "events.jsonl").read_text() == ""

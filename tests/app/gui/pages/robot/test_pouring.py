@@ -180,6 +180,8 @@ def test_after_a_stop_the_guide_leads_back_to_a_new_plan(ready, qtbot, reach, mu
     reach(Step.PLAN_BACK_OFF)
     assert abs(page.desk.arm.status.state.joints_rad - joints_rad).max() < 1e-3, "it has not moved"
     assert side.primary.text() == "Plan the return"
+    kinds = [event["kind"] for event in pour_runs(mug_session)[0].events]
+    assert kinds[-2:] == ["stopped", "recovered"]
     side.primary.click()
     reach(Step.CHECK_BACK_OFF)
     assert [move.name for move in page.procedure.motion.moves][-1] == "home"
