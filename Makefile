@@ -5,8 +5,8 @@ QUICK = tests/core/parameters tests/core/session tests/core/evaluation tests/cor
 	tests/core/test_mesh.py tests/core/test_mesh_file.py tests/app/operations/test_pouring.py \
 	tests/app/cli/test_remedies.py tests/app/cli/test_parameters.py tests/app/library/test_summary.py \
 	tests/hardware/cell tests/test_no_front_end.py
-OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS_NUM_THREADS=1 \
-	.venv/bin/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS_NUM_THREADS=1 .venv/bin/python -m pytest
+TWO_AT_A_TIME = -n 2 --dist loadfile --no-loadscope-reorder
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
 .PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye decision drift pour-plans pour-faults pour-soak fuzz scene-speed stop-latency window-start window-tour window-kills screenshots clean
@@ -31,12 +31,14 @@ lint:
 # In two runs: without a screen OpenGL draws nothing, and with one a test's windows would need care.
 # Two processes with their workers are enough threads: more of OpenBLAS's own would only wait for each other.
 unit:
-	$(OFFSCREEN) -m "not gl and not system"
+	$(OFFSCREEN) $(TWO_AT_A_TIME) -m "not gl and not system"
 	$(SCREEN) .venv/bin/python -m pytest -m "gl and not system" tests/app/gui
 
 # Whole jobs: demos, pours, faults, kills and the tour of the window, in real processes over real protocols.
+# What drives an arm in real time has the machine to itself: a real arm's computer does nothing else either.
 test-system: setup-test
-	$(OFFSCREEN) -m "not gl and system"
+	$(OFFSCREEN) $(TWO_AT_A_TIME) -m "not gl and system and not punctual"
+	$(OFFSCREEN) -m "not gl and punctual"
 	$(SCREEN) .venv/bin/python -m pytest -m "gl and system" tests/app/gui
 
 # What needs no physics, no window and no clock: the inner loop.

@@ -14,7 +14,7 @@ from tests.app.sessions import copied, made_once
 from tests.awake import within
 from tests.patience import HANG_S
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 QUICK = [
     "--object=bowl",

@@ -19,7 +19,7 @@ from tests.app.cli.test_scan_command import QUICK, SIMULATED
 from tests.app.sessions import copied, made_once
 from tests.patience import HANG_S, wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

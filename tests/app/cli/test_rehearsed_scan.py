@@ -22,7 +22,7 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.cli.test_scan_command import COARSE, few_views
 from tests.patience import wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

@@ -33,7 +33,7 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.jobs.hosts import ListenedHost
 from tests.patience import wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

@@ -11,7 +11,7 @@ from core.mesh_file import write_ply
 from core.parameters import Parameters, apply_settings
 from hardware.simulation.objects import builtin_object
 from tests.app.jobs.hosts import ListenedHost
-from tests.awake import AwakeClock
+from tests.awake import within
 
 pytestmark = pytest.mark.system
 
@@ -76,10 +76,8 @@ def test_a_cancelled_run_keeps_what_was_finished(judging, folder, tmp_path):
     slow = apply_settings(Parameters(), QUICK | {"containability.n_max": 1000, "containability.n_min": 1000})
     judging.host.start(TuningWork.judge, JudgingTask(read_labels(folder), slow, results))
     assert judging.wait_for(VerdictReached).verdict.name == "junk"
-    with AwakeClock() as clock:
-        began_s = clock.now_s()
+    with within(2):
         judging.host.cancel()
         end = judging.end()
-        assert clock.now_s() - began_s < 2
     assert isinstance(end, Failed) and end.kind is FailureKind.CANCELLED
     assert [path.name for path in results.glob("*.json")] == ["junk.json"]

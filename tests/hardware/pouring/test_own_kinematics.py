@@ -16,7 +16,7 @@ from hardware.pouring.run_log import driven_pivot_error_m
 from hardware.robots.ur import primary_interface
 from tests.hardware.pouring.rig import POURING, a_target
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

@@ -16,7 +16,7 @@ from hardware.scanning.views import name_views
 from tests.hardware.pouring.rig import Rig
 from tests.patience import wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

@@ -17,7 +17,7 @@ from hardware.grippers.tool_output import ToolOutputGripper
 from hardware.interfaces import RobotState
 from hardware.modes import RobotMode, SafetyMode
 from hardware.realtime import take_precedence
-from tests.awake import AwakeClock
+from tests.awake import AwakeClock, in_time
 from tests.hardware.robots.ur.bench import (
     ACCELERATION,
     HOME,
@@ -150,9 +150,10 @@ def test_stopped_from_another_thread_it_stands_in_a_fifth_of_a_second(
     stopping.start()
     took_s = either_bench.seconds_to_rest()
     stopping.join()
-    waiting.join(1)
-    assert took_s < 0.2
-    assert time.monotonic() - began_s < 0.6
+    waiting.join()
+    said_s = time.monotonic() - began_s
+    in_time(took_s, 0.2, "coming to rest")
+    in_time(said_s, 0.6, "being told")
     assert [type(error) for error in errors] == [RobotStopped]
     assert move.is_done
     assert 0 < move.progress < 1

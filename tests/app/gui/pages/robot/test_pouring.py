@@ -25,7 +25,7 @@ from hardware.simulation.ur_controller.identity import CONTROL_PORT
 from tests.app.gui.pages.robot.presses import CHECKS, hold, pour_until, text, tick_all
 from tests.awake import within
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

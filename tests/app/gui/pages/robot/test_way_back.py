@@ -13,7 +13,7 @@ from hardware.cell import SIMULATED_CELL, read_cell
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.gui.pages.robot.presses import hold, pour_until, press, text, tick_all
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 
