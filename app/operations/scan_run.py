@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hardware.scanning.views import ScanPlan
 
 FIRST_LOOK = "first look"
+_INTO_OPENINGS = "Into openings whose inside was not seen: "
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ class ScanRun:
         self._watch = watch
         self._moving: WatchedMoving | None = None
         self._scanning: tuple[Cell, ScanProcedure] | None = None
+        self._purpose = ""
 
     def take(self, request: ScanRequest) -> None:
         """Take everything; after a stop make the arm ready, plan from where it is, and ask.
@@ -117,15 +119,19 @@ class ScanRun:
                 log.event("recovered", "The arm was made ready again.")
 
     def _take_once(self, request: ScanRequest) -> None:
-        from hardware.scanning.next_best_views import take_next_best_views
+        from hardware.scanning.next_best_views import look_inside, take_next_best_views
         from hardware.scanning.views import name_views
 
         plan = self._plan()
         cell, procedure = self._scanning = self._scanning or self._begin(plan)
+        self._purpose = ""
         procedure.take(name_views(plan.views_rad))
         procedure.retake(request.retake)
+        self._purpose = _INTO_OPENINGS
         if request.adaptive:
             take_next_best_views(cell, procedure)
+        elif not (request.retake or cell.settings.robot.kind == "replay"):
+            look_inside(cell, procedure, len(plan.views_rad))
         procedure.scan()  # refuses what is too little for a scan
 
     def _plan(self) -> ScanPlan:
@@ -165,7 +171,7 @@ class ScanRun:
         operator, robot = self._watch.operator, cell.robot.name
 
         def confirm(route: ScanRoute) -> None:
-            operator.confirm_route(replace(route, purpose=purpose), robot)
+            operator.confirm_route(replace(route, purpose=purpose or self._purpose), robot)
 
         self._moving = WatchedMoving(cell, self._watch.log, self._reporter, confirm)
         return self._moving

@@ -172,7 +172,7 @@ def choose_box_views(
         best = int(gains.argmax())
         if gains[best] <= 0:
             break
-        if _is_clear_from_home(scene, task, candidates[best]):
+        if is_clear_from_home(scene, task, candidates[best]):
             chosen.append(candidates[best])
             unknown *= 1 - tells[best]
         worth[best] = 0
@@ -183,8 +183,8 @@ def views_clear_from_home(scene: MotionScene, task: ViewTask, dome: Dome) -> lis
     """Return the dome's reachable views that have a clear straight way from home, the best first."""
     return [
         view
-        for view in _near_home(reachable_views(scene, task, dome), task)
-        if _is_clear_from_home(scene, task, view)
+        for view in near_home(reachable_views(scene, task, dome), task)
+        if is_clear_from_home(scene, task, view)
     ]
 
 
@@ -209,11 +209,11 @@ def _candidates(scene: MotionScene, task: ViewTask, dome: Dome) -> list[Reachabl
         for target_m in _targets_m(task.box_min_m, task.box_max_m)
         for view in reachable_views(scene, replace(task, target_m=target_m), dome)
     ]
-    return _near_home(views, task)
+    return near_home(views, task)
 
 
-def _near_home(views: Iterable[ReachableView], task: ViewTask) -> list[ReachableView]:
-    """Those within half a turn of home in every joint: home is then on no way a turn away."""
+def near_home(views: Iterable[ReachableView], task: ViewTask) -> list[ReachableView]:
+    """Return those within half a turn of home in every joint: home is then on no way a turn away."""
     return [view for view in views if np.abs(view.joints_rad - task.home_rad).max() < _HALF_TURN_RAD]
 
 
@@ -227,5 +227,6 @@ def _targets_m(low_m: FloatArray, high_m: FloatArray) -> Iterable[FloatArray]:
         yield middle + np.array(shares) * size
 
 
-def _is_clear_from_home(scene: MotionScene, task: ViewTask, view: ReachableView) -> bool:
+def is_clear_from_home(scene: MotionScene, task: ViewTask, view: ReachableView) -> bool:
+    """Return whether the straight way from home to a view is clear."""
     return check_path(scene, [task.home_rad, view.joints_rad], task.min_clearance_m).is_clear

@@ -8,6 +8,7 @@ measured, the unseen voxels along it would be revealed.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, radians
 
@@ -29,6 +30,8 @@ FEWEST_VOXELS = 10
 WALL_VOXELS = 2.0
 """How far behind a seen surface its wall is taken for known; deeper a view only assumes."""
 RAY_SPACING_VOXELS = 0.7
+SPARSE_SPACING_VOXELS = 2.0
+"""Enough to tell which of many candidates are worth looking at closely."""
 NORMAL_BLUR_VOXELS = 1.5
 PADDING_VOXELS = 6
 PARALLEL = 1e-12
@@ -87,11 +90,13 @@ def propose_views(
     candidates: FloatArray,
     camera: DepthCamera,
     most: int = MOST_VIEWS,
+    can_take: Callable[[int], bool] = lambda _index: True,
 ) -> tuple[ProposedView, ...]:
     """Choose up to `most` of the candidates `T_base_camera` (N, 4, 4), each for what it adds.
 
     About 1 ms a candidate. Stops where a view adds less than 2 % of the hidden region; nothing hidden, or
-    nothing that any candidate could reveal, gives an empty answer.
+    nothing that any candidate could reveal, gives an empty answer. `can_take` is asked of those alone that
+    would be chosen, and one that it refuses is left out.
     """
     if len(cavity.region) == 0 or len(candidates) == 0:
         return ()
@@ -103,8 +108,11 @@ def propose_views(
         best = int(gains.argmax())
         if gains[best] < least:
             break
-        chosen.append(ProposedView(best, int(gains[best])))
-        revealed &= ~revealed[best]
+        if can_take(best):
+            chosen.append(ProposedView(best, int(gains[best])))
+            revealed &= ~revealed[best]
+        else:
+            revealed[best] = False
     return tuple(chosen)
 
 
@@ -114,13 +122,17 @@ def revealed_voxels(
     platform_height_m: float,
     candidates: FloatArray,
     camera: DepthCamera,
+    spacing_voxels: float = RAY_SPACING_VOXELS,
 ) -> BoolArray:
-    """Which of the cavity's region (M, 3) each candidate (N, 4, 4) would reveal: (N, M)."""
+    """Which of the cavity's region (M, 3) each candidate (N, 4, 4) would reveal: (N, M).
+
+    Rays are `spacing_voxels` apart where the region is farthest.
+    """
     scene = _scene(volume, cavity, platform_height_m)
     revealed = np.zeros((len(candidates), len(cavity.region)), dtype=np.bool_)
     corners_m = _corners_m(volume, cavity)
     for pose, row in zip(candidates, revealed, strict=True):
-        window = _window(pose, corners_m, camera, volume.voxel_m)
+        window = _window(pose, corners_m, camera, spacing_voxels * volume.voxel_m)
         if window is not None:
             _reveal(
                 scene.wall,
@@ -165,7 +177,7 @@ def _corners_m(volume: TsdfVolume, cavity: HiddenCavity) -> FloatArray:
 
 
 def _window(
-    T_base_camera: FloatArray, corners_m: FloatArray, camera: DepthCamera, voxel_m: float
+    T_base_camera: FloatArray, corners_m: FloatArray, camera: DepthCamera, spacing_m: float
 ) -> IntArray | None:
     """First column, row, last column, row (exclusive) and step of the pixels that may see the region."""
     x, y, z = transform_points(invert_pose(T_base_camera), corners_m).T
@@ -175,7 +187,7 @@ def _window(
     u, v = k.fx * x / z + k.cx, k.fy * y / z + k.cy
     left, right = max(int(u.min()), 0), min(int(u.max()) + 2, camera.width_px)
     top, bottom = max(int(v.min()), 0), min(int(v.max()) + 2, camera.height_px)
-    step = max(1, int(RAY_SPACING_VOXELS * voxel_m * k.fx / z.max()))
+    step = max(1, int(spacing_m * k.fx / z.max()))
     return np.array([left, top, right, bottom, step]) if left < right and top < bottom else None
 
 

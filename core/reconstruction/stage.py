@@ -170,7 +170,7 @@ def _unseen_readings(found: _Found, solid: _ObjectField, support_m: float) -> Un
     roomy = solid.freed(unseen.in_volume(room)).surface(support_m)
     if not unseen.reaches_support(volume.voxel_m):
         return UnseenReadings(unseen_ml, roomy, None)
-    through = unseen.in_volume(unseen.region) | unseen.below_region(volume)
+    through = unseen.in_volume(unseen.region | room) | unseen.below_region(volume)
     return UnseenReadings(unseen_ml, roomy, solid.freed(through).surface(support_m))
 
 

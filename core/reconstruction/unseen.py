@@ -34,26 +34,36 @@ class UnseenInside:
     """Masks (X, Y, Z) over the layers of a volume from `first_layer` up.
 
     Attributes:
-        outside: not within a closed ring of wall in its layer.
+        outside: not within a closed ring, in its layer, of wall or of what may be wall.
         enclosed: within one, and not solid.
+        free: of these, what a view looked through.
         frontier: unseen voxels of it at which known free space ends.
         region: the unseen that is joined to the frontier, the cores of walls and floors included.
+        assumed: what is joined to the region and solid only because it lies just behind an outer side.
         first_layer: of the volume, just above the platform.
     """
 
     outside: BoolArray
     enclosed: BoolArray
+    free: BoolArray
     frontier: BoolArray
     region: BoolArray
+    assumed: BoolArray
     first_layer: int
 
     def room(self, voxel_m: float) -> BoolArray:
-        """Return (X, Y, Z) what may be hollow of the region, with walls and floor as thin as they can be."""
+        """Return (X, Y, Z) what may be hollow, with walls and floor as thin as they can be."""
         within_layer = (voxel_m, voxel_m, _FAR_M)
         away_m = distance_transform_edt(~self.outside, sampling=within_layer)
-        room: BoolArray = self.region & (away_m > THINNEST_WALL_M)
+        # Of a voxel as far away as this, half lies nearer.
+        room: BoolArray = (self.region | self.assumed) & (away_m > THINNEST_WALL_M + voxel_m / 2)
         room[:, :, : int(np.ceil(THINNEST_WALL_M / voxel_m))] = False
         return room
+
+    def room_share(self, voxel_m: float) -> float:
+        """Which share of all that may be hollow no view saw."""
+        n_room = int(self.room(voxel_m).sum())
+        return n_room / max(n_room + int(self.free.sum()), 1)
 
     def reaches_support(self, voxel_m: float) -> bool:
         """Whether so much of the region lies just above the platform that something may fall through."""
@@ -83,12 +93,27 @@ def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenIn
     seen = volume.weight[:, :, first_layer:] > 0
     distance = volume.distance[:, :, first_layer:]
     solid = seen & (distance < 0)
-    outside = _outside_in_layer(solid)
+    # Below a belly the outer side is hidden as well: what may be its wall parts inside and outside, too.
+    outside = _outside_in_layer(solid | (~seen & volume.hidden[:, :, first_layer:]))
     enclosed = ~outside & ~solid
     free = seen & (distance > FREE_SHARE)
     frontier = enclosed & ~seen & binary_dilation(free & enclosed)
     frontier = large_groups(frontier, SMALLEST_PATCH_M2 / volume.voxel_m**2, ALL_NEIGHBOURS)
-    return UnseenInside(outside, enclosed, frontier, _connected_to(frontier, enclosed & ~seen), first_layer)
+    region = _connected_to(frontier, enclosed & ~seen)
+    looked_through = enclosed & seen
+    assumed = _only_behind_outer_sides(solid, region, looked_through, volume)
+    return UnseenInside(outside, enclosed, looked_through, frontier, region, assumed, first_layer)
+
+
+def _only_behind_outer_sides(
+    solid: BoolArray, region: BoolArray, free: BoolArray, volume: TsdfVolume
+) -> BoolArray:
+    """Solid voxels joined to the region so far from free space inside that no view from there saw them."""
+    if not region.any():
+        return np.zeros_like(region)
+    from_inside_m = distance_transform_edt(~free) * volume.voxel_m if free.any() else np.inf
+    unsure = solid & (from_inside_m > volume.behind_m)
+    return _connected_to(region, region | unsure) & unsure
 
 
 def _outside_in_layer(solid: BoolArray) -> BoolArray:

@@ -276,6 +276,10 @@ class ScanSettings(Group):
         0.42, "Planned views: no object rises higher above the platform.",
         unit="m", source=OURS, low=0.01, high=1, is_written=False,
     )  # fmt: skip
+    look_inside: bool = choice(
+        True, "A scan ends with up to 4 views into openings of whose inside too much is unseen.",
+        source=OURS, is_written=False,
+    )  # fmt: skip
     drift_m: float = quantity(
         0.002, "Reference view: a camera that moved farther is warned of.",
         unit="m", source=OURS, low=0.0005, high=0.1, is_written=False,

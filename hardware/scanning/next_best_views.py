@@ -1,4 +1,7 @@
-"""Views that would see the inside of an opening that the scan did not (the paper's future work)."""
+"""Views that would see the inside of an opening that the scan did not (the paper's future work).
+
+A scan ends with a few of them where its own views left much of the inside unseen.
+"""
 
 from __future__ import annotations
 
@@ -7,27 +10,32 @@ from dataclasses import replace
 import numpy as np
 
 from core.geometry import FloatArray
+from core.motion.box_views import is_clear_from_home, near_home
 from core.motion.views import Dome, ReachableView, reachable_views
 from core.quality.cavity import find_hidden_cavity
-from core.quality.next_views import DepthCamera, propose_views
+from core.quality.next_views import SPARSE_SPACING_VOXELS, DepthCamera, propose_views, revealed_voxels
 from core.reconstruction.tsdf import TsdfVolume
+from core.reconstruction.unseen import find_unseen_inside
 from core.scan.model import Intrinsics
 from hardware.cell import Cell
 from hardware.cell.scene import view_task
 from hardware.scanning.procedure import ScanProcedure
-from hardware.scanning.views import Joints, name_views
+from hardware.scanning.views import Joints, ViewState, name_views
 
 MOST_VIEWS = 6
 VIEWS_A_ROUND = 2
 """What these reveal changes what the others would, so the rest is chosen anew."""
+MOST_VIEWS_BY_DEFAULT = 4
+UNSEEN_SHARE = 0.04
+"""A scan that left more than this share of the inside unseen looks into it."""
 INTO_OPENINGS = Dome(
-    elevations_deg=(50, 56, 62, 68, *range(70, 91, 2)),
+    elevations_deg=(20, 30, 40, 50, 56, 62, 68, *range(70, 91, 2)),
     azimuths_deg=tuple(range(-180, 180, 20)),
     distances_m=(0.45, 0.5, 0.55, 0.6, 0.65, 0.7),
     rolls_deg=tuple(range(-180, 180, 45)),
 )
 """The floor of a narrow opening is visible within a few degrees only, to camera and projector alike, so steep
-views come densely, from afar and with every roll."""
+views come densely, from afar and with every roll. Below a lid that is half open only flat ones look."""
 
 
 def propose(
@@ -37,7 +45,9 @@ def propose(
     image_size: tuple[int, int],
     most: int = MOST_VIEWS,
 ) -> list[tuple[Joints, int]]:
-    """Return up to `most` reachable views, each with how many unseen voxels it reveals, best first.
+    """Return up to `most` views, each with how many unseen voxels it reveals, best first.
+
+    Each has a clear straight way from home, so that it is reached from wherever the arm is.
 
     Args:
         cell: with its arm and obstacles.
@@ -57,24 +67,63 @@ def propose(
         target_m=hidden_m.mean(axis=0),
         field_of_view_deg=intrinsics.field_of_view_deg(image_size),
     )
-    views = reachable_views(cell.scene, task, INTO_OPENINGS)
-    different = _one_each(views)
+    different = _one_each(near_home(reachable_views(cell.scene, task, INTO_OPENINGS), task))
     if not different:
         return []
     poses = np.array([view.T_base_camera for view in different])
     width, height = image_size
     settings = cell.settings.camera
     camera = DepthCamera(intrinsics, width, height, settings.baseline_m, settings.min_range_m)
-    proposed = propose_views(volume, cavity, height_m, poses, camera, most)
-    return [(tuple(different[p.index].joints_rad.tolist()), p.n_revealed_voxels) for p in proposed]
+    told = revealed_voxels(volume, cavity, height_m, poses, camera, SPARSE_SPACING_VOXELS).sum(axis=1)
+    best = _best_of_each_direction(different, told.tolist())
+    proposed = propose_views(
+        volume,
+        cavity,
+        height_m,
+        poses[best],
+        camera,
+        most,
+        lambda k: is_clear_from_home(cell.scene, task, different[best[k]]),
+    )
+    return [(tuple(different[best[p.index]].joints_rad.tolist()), p.n_revealed_voxels) for p in proposed]
 
 
-def take_next_best_views(cell: Cell, procedure: ScanProcedure) -> int:
-    """Propose views and take them, a few at a time, at most `MOST_VIEWS`; return how many."""
+def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
+    """Take a few views into openings of whose inside the scan left too much unseen; return how many.
+
+    Of an interrupted scan those that were chosen already are taken first, and count.
+
+    Args:
+        cell: of the procedure.
+        procedure: which has taken the scan's own views.
+        n_own: how many these are.
+
+    Raises:
+        StageError, Cancelled, DeviceError, SessionError: see `ScanProcedure.take`.
+    """
+    if not cell.settings.scan.look_inside:
+        return 0
+    chosen_before = procedure.records[n_own:]
+    procedure.take([record.view for record in chosen_before if record.state is ViewState.PENDING])
+    most = MOST_VIEWS_BY_DEFAULT - len(chosen_before)
+    return take_next_best_views(cell, procedure, most, UNSEEN_SHARE)
+
+
+def take_next_best_views(
+    cell: Cell, procedure: ScanProcedure, most: int = MOST_VIEWS, least_share: float = 0.0
+) -> int:
+    """Propose views and take them, a few at a time; return how many.
+
+    Args:
+        cell: of the procedure.
+        procedure: which has taken other views.
+        most: how many at most.
+        least_share: of the inside; while no more is unseen, none is taken.
+    """
     taken = 0
-    while taken < MOST_VIEWS:
+    while taken < most and _unseen_share(cell, procedure.volume) > least_share:
         proposals = propose(
-            cell, procedure.volume, *procedure.camera_facts(), min(VIEWS_A_ROUND, MOST_VIEWS - taken)
+            cell, procedure.volume, *procedure.camera_facts(), min(VIEWS_A_ROUND, most - taken)
         )
         if not proposals:
             break
@@ -83,7 +132,22 @@ def take_next_best_views(cell: Cell, procedure: ScanProcedure) -> int:
     return taken
 
 
-def _one_each(views: tuple[ReachableView, ...]) -> list[ReachableView]:
+def _unseen_share(cell: Cell, volume: TsdfVolume) -> float:
+    """Which share of the inside of openings no view saw."""
+    return find_unseen_inside(volume, cell.settings.place.platform_height_m).room_share(volume.voxel_m)
+
+
+def _best_of_each_direction(views: list[ReachableView], worth: list[int]) -> list[int]:
+    """Which view is worth most in each direction; those that are worth nothing are left out."""
+    best: dict[tuple[float, float], int] = {}
+    for k, view in enumerate(views):
+        direction = view.elevation_deg, view.azimuth_deg
+        if worth[k] > 0 and (direction not in best or worth[k] > worth[best[direction]]):
+            best[direction] = k
+    return list(best.values())
+
+
+def _one_each(views: list[ReachableView]) -> list[ReachableView]:
     """The best configuration of each camera pose."""
     best: dict[bytes, ReachableView] = {}
     for view in views:

@@ -8,6 +8,7 @@ from core.scan.model import Scan
 from hardware.cell import open_cell, read_cell
 from hardware.cell.scene import object_space
 from hardware.cell.settings import CellSettings, SimulationSettings
+from hardware.scanning.next_best_views import look_inside
 from hardware.scanning.planning import cell_for_plan, plan_scan
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
@@ -42,8 +43,10 @@ def simulate_scan(
     world = world_with(mesh, settings.place, seed, object_space(settings))
     with open_cell(settings, world, seed) as opened:
         plan = plan_scan(opened, reporter)
-        procedure = ScanProcedure(cell_for_plan(opened, plan), None, reporter)
+        planned = cell_for_plan(opened, plan)
+        procedure = ScanProcedure(planned, None, reporter)
         procedure.take(name_views(plan.views_rad))
+        look_inside(planned, procedure, len(plan.views_rad))
         return procedure.scan()
 
 

@@ -12,10 +12,10 @@ from hardware.simulation.objects import builtin_object
 from tests.core.quality.studio import LOW_RINGS, VOXEL_M, on_platform, shaft, tube
 
 
-def test_an_unseen_shaft_may_be_hollow_but_for_a_floor_as_thin_as_floors_are():
+def test_an_unseen_shaft_may_be_hollow_but_for_walls_and_a_floor_as_thin_as_they_can_be():
     unseen = find_unseen_inside(shaft(0.1), platform_height_m=0.0)
     room = unseen.room(VOXEL_M)
-    assert room.sum(axis=(0, 1)).max() == 11 * 11
+    assert room.sum(axis=(0, 1)).max() == 15 * 15
     assert not room[:, :, : round(THINNEST_WALL_M / VOXEL_M)].any()
     top = np.nonzero(unseen.in_volume(room).any(axis=(0, 1)))[0][-1]
     assert top == 0.1 / VOXEL_M - 1
@@ -31,6 +31,14 @@ def test_a_floor_that_was_seen_stays():
     unseen = find_unseen_inside(shaft(0.1, floor_m=0.02), platform_height_m=0.0)
     assert unseen.room(VOXEL_M).any()
     assert not unseen.reaches_support(VOXEL_M)
+
+
+def test_a_wall_that_was_seen_from_both_sides_is_as_thick_as_it_looks():
+    volume = shaft(0.1)
+    volume.weight[11:20, 11:20, :25] = 1
+    volume.distance[11:20, 11:20, :25] = 1.0
+    unseen = find_unseen_inside(volume, platform_height_m=0.0)
+    assert unseen.region.any() and not unseen.assumed[:, :, :24].any()
 
 
 def reconstructed(mesh) -> Reconstruction:
