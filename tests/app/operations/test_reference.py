@@ -144,7 +144,7 @@ def test_a_look_is_never_taken_from_where_an_object_may_stand(referred):
     low = read_cell(referred).scan.views_rad[0]
     assert check_path(object_scene(referred), np.array(low), 0.02).problem is not None
     (folder / RESULT).write_text(json.dumps(record | {"joints_rad": low}))
-    with pytest.raises(MotionError, match="from where an object may stand .* store another one"):
+    with pytest.raises(MotionError, match=r"from where an object may stand .* store another one"):
         check_drift(referred, Reporter(), None)
     assert runs(referred, step_names.DRIFT)[-1].is_dir()
 
