@@ -75,6 +75,8 @@ def scan_object(
         raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
     seed = pipeline.parameters.seed
     origin = _origin(settings, source, mesh, seed)
+    if request.cell_file is not None and not is_replay:
+        origin |= _known_camera_error(request.cell_file, settings)
     is_done = pipeline.session.is_fresh("scan", {}, origin)
     store = ScanStore(pipeline.session.path / UNFINISHED_SCAN, origin)
     if request.restart or is_replay:  # playing a recording again costs nothing
@@ -202,6 +204,15 @@ def _origin(
         content = mesh.vertices_m.tobytes() + mesh.faces.tobytes()
         origin |= {"object": source, "object_sha256": hashlib.sha256(content).hexdigest(), "seed": seed}
     return origin
+
+
+def _known_camera_error(cell_file: Path, settings: CellSettings) -> dict[str, float]:
+    """What the imagination reads of the camera's calibration; nothing if it was not calibrated here."""
+    from app.operations.calibration.camera_error import camera_error
+    from core.stages import CAMERA_ERRORS
+
+    error = camera_error(cell_file, settings.camera.pose)
+    return {} if error is None else dict(zip(CAMERA_ERRORS, error, strict=True))
 
 
 def _unconnected(settings: CellSettings) -> Cell:
