@@ -20,6 +20,8 @@ P = TypeVar("P", bound=Parameters)
 SCAN, MESH = "scan", "mesh"
 GIVEN = (SCAN, MESH)
 """What comes from outside; a session holds one of the two."""
+CAMERA_ERRORS = ("camera_error_m", "camera_error_rad")
+"""In a scan's record: what the calibration of its camera leaves open of where an object is seen (SD)."""
 SURFACE = "surface"
 """Stands for the stage that gives the object's surface: `mesh` if one was imported, else `reconstruction`."""
 

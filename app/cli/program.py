@@ -26,7 +26,7 @@ from app.cli.options import (
     written_answer,
     written_file,
 )
-from app.cli.remedies import worded
+from app.cli.remedies import worded, worded_usage
 from core.errors import PoursightError
 
 app = typer.Typer(
@@ -369,12 +369,18 @@ def ur_controller(
 
 
 def main() -> None:
-    """Run the command line; what can be explained is one sentence and exit code 1."""
+    """Run the command line; what can be explained is one sentence, and exit code 1, or 2 for wrong words."""
     try:
-        app()
+        code = app(prog_name="poursight", standalone_mode=False)
     except PoursightError as error:
         print(f"poursight: {worded(error)}", file=sys.stderr)
+        sys.exit(1)
+    except typer.TyperException as error:
+        print(f"poursight: {worded_usage(error)}", file=sys.stderr)
+        sys.exit(2)
+    except typer.Abort:
         sys.exit(1)
     except BrokenPipeError:
         sys.stderr.close()  # the reader of our output is gone
         sys.exit(1)
+    sys.exit(code or 0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import typer
+
 from core.errors import PoursightError, Remedy
 
 REMEDIES = {
@@ -31,6 +33,26 @@ def worded(error: PoursightError) -> str:
     if len(said) > LONGEST_SENTENCE:
         said = " ".join(_shortened(word) for word in said.split())
     return said if len(said) <= LONGEST_SENTENCE else f"{said[: LONGEST_SENTENCE - 3]}..."
+
+
+def worded_usage(error: typer.TyperException) -> str:
+    """Return which word of a command line cannot be, and who knows better, in one line."""
+    context = getattr(error, "ctx", None)
+    path = "poursight" if context is None else context.command_path
+    text: str = getattr(error, "format_message", error.__str__)()
+    said = " ".join(text.split()).rstrip(".")
+    end = f". See '{path} --help'."
+    if len(said) + len(end) > LONGEST_SENTENCE:
+        said = " ".join(_shortened(word) for word in said.split())
+    return _both_ends(said, LONGEST_SENTENCE - len(end)) + end
+
+
+def _both_ends(said: str, most: int) -> str:
+    """Return both ends of what is too long: the option is named first, the reason last."""
+    if len(said) <= most:
+        return said
+    half = (most - 3) // 2
+    return f"{said[:half]}...{said[-half:]}"
 
 
 def _shortened(word: str) -> str:

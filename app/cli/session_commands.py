@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import sys
-import tempfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -35,6 +34,7 @@ from core.imagination.retention.result import retention_sentence
 from core.parameters import Parameters, flatten
 from core.pipeline.pipeline import Pipeline
 from core.report import omega_verdict_sentence, pours_sentence, risk_sentence, verdict_sentence
+from core.scratch import ScratchFolder
 from core.session import Session
 from core.workers import WorkerPool
 from hardware.cell import SIMULATED_CELL, read_cell
@@ -95,9 +95,9 @@ def imagine(
     source: Path, choices: Choices, workers: int | None, json_file: Path | None, session: Path | None
 ) -> None:
     """Imagine a session or a mesh and print the answer."""
-    with tempfile.TemporaryDirectory(prefix="poursight-") as scratch:
+    with ScratchFolder() as scratch:
         is_mesh = not source.is_dir()
-        folder = (session or Path(scratch) / "session") if is_mesh else source
+        folder = (session or scratch / "session") if is_mesh else source
         if session is not None and not is_mesh:
             raise InputError(f"{source} is a session already: leave out --session, which is for meshes.")
         with working(folder, choices, workers, is_existing=not is_mesh) as pipeline:

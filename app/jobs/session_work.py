@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from app.jobs.messages import Event
@@ -15,6 +14,7 @@ from core.geometry import FloatArray
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.progress import Reporter
+from core.scratch import ScratchFolder, remove_left
 from core.workers import Task, WorkerPool
 
 if TYPE_CHECKING:
@@ -45,11 +45,12 @@ class SessionWork(Service):
         self._wanted_ahead: Parameters | None = None
 
     def prepare(self) -> None:
-        """Start the workers, and import what the first stage needs."""
+        """Start the workers, import what the first stage needs, and remove what a killed program left."""
         from core.imagination.imagination import WORKER_MODULE
         from core.pipeline import pipeline  # noqa: F401 - takes a second, so not in the first job
         from core.pipeline.jobs import JOBS_MODULE
 
+        remove_left()
         self._pool.start(WORKER_MODULE, JOBS_MODULE)
 
     def close(self) -> None:
@@ -110,10 +111,10 @@ class SessionWork(Service):
 
     def render(self, reporter: JobReporter, task: SessionTask) -> None:
         """Render stills and films of what was imagined; each still is reported as soon as it is drawn."""
-        with TemporaryDirectory(prefix="poursight-", ignore_cleanup_errors=True) as folder:
-            pictures = PictureReporter(reporter, task.folder, Path(folder))
+        with ScratchFolder() as folder:
+            pictures = PictureReporter(reporter, task.folder, folder)
             with working_on(task, self._pool, pictures) as pipeline:
-                pipeline.evidence(Path(folder))
+                pipeline.evidence(folder)
 
     def judge_motions(self, reporter: JobReporter, task: SessionTask, cell: CellSettings) -> None:
         """Find out which of the imagined pours the cell's arm can make.

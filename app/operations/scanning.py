@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from app.library.session_folder import UNFINISHED_SCAN
+from app.operations.animating import animated
 from app.operations.arm import connected
 from app.operations.scan_run import ScanObserver, ScanOperator, ScanRequest, ScanRun, Watch
 from core.errors import InputError, StageError
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 
 SCAN_RUNS_FOLDER = "scans"
 """Of a session: what a real arm did in each scan."""
-_WATCHED_SPEED_UP = 5.0
-"""Whoever watches a simulated scan wants to see the arm move, but not for a minute."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +75,8 @@ def scan_object(
         raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
     seed = pipeline.parameters.seed
     origin = _origin(settings, source, mesh, seed)
+    if request.cell_file is not None and not is_replay:
+        origin |= _known_camera_error(request.cell_file, settings)
     is_done = pipeline.session.is_fresh("scan", {}, origin)
     store = ScanStore(pipeline.session.path / UNFINISHED_SCAN, origin)
     if request.restart or is_replay:  # playing a recording again costs nothing
@@ -86,23 +87,11 @@ def scan_object(
         store.adopt(pipeline.session.folder("scan"))
     elif request.retake and not is_done:
         raise StageError("There is no finished scan of this cell and object to retake views of; scan first.")
-    if request.cell_file is not None and not is_replay:
-        _refuse_drift(request.cell_file, pipeline.reporter, observer, operator)
     opened = _open(settings if observer is None else animated(settings), mesh, seed)
     with connected(opened, operator, pipeline.reporter) as cell:
         _take(pipeline, cell, store, request, observer, operator)
     pipeline.keep_written_scan(store.publish, origin)
     store.remove()
-
-
-def _refuse_drift(
-    cell_file: Path, reporter: Reporter, observer: ScanObserver | None, operator: ScanOperator | None
-) -> None:
-    from app.operations.calibration.capture import NOBODY, CaptureObserver
-    from app.operations.calibration.reference import check_drift
-
-    watching = NOBODY if observer is None else CaptureObserver(observer.opened, is_watching=True)
-    check_drift(cell_file, reporter, operator, watching)
 
 
 def _take(
@@ -113,10 +102,13 @@ def _take(
     observer: ScanObserver | None,
     operator: ScanOperator | None,
 ) -> None:
+    from app.operations.calibration.reference import check_drift
     from hardware.pouring.run_log import RunLog
 
     reporter = pipeline.reporter
     with nullcontext() if observer is None else observer.opened(cell):
+        if request.cell_file is not None and cell.settings.robot.kind != "replay":
+            check_drift(cell, request.cell_file, reporter, operator)
         if operator is None or not cell.settings.robot.is_real:
             ScanRun(cell, store, reporter, observer).take(request)
             return
@@ -137,27 +129,6 @@ def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
 
     world = None if mesh is None else world_with(mesh, settings.place, seed, object_space(settings))
     return open_cell(settings, world, seed)
-
-
-def animated(settings: CellSettings) -> CellSettings:
-    """Return the same cell, with a simulated arm that moves where it would jump; its images are the same.
-
-    As if time ran faster: speeds grow with the factor, accelerations with its square.
-    """
-    if not (settings.is_simulated and settings.simulation.is_instant):
-        return settings
-    robot, factor = settings.robot, _WATCHED_SPEED_UP
-    faster = {
-        "joint_speed_rad_s": factor * robot.joint_speed_rad_s,
-        "joint_acceleration_rad_s2": factor**2 * robot.joint_acceleration_rad_s2,
-    }
-    return settings.model_copy(
-        update={
-            "robot": robot.model_copy(update=faster),
-            "scan": settings.scan.model_copy(update={"settle_s": 0.0}),
-            "simulation": settings.simulation.model_copy(update={"is_instant": False}),
-        }
-    )
 
 
 def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
@@ -233,6 +204,15 @@ def _origin(
         content = mesh.vertices_m.tobytes() + mesh.faces.tobytes()
         origin |= {"object": source, "object_sha256": hashlib.sha256(content).hexdigest(), "seed": seed}
     return origin
+
+
+def _known_camera_error(cell_file: Path, settings: CellSettings) -> dict[str, float]:
+    """What the imagination reads of the camera's calibration; nothing if it was not calibrated here."""
+    from app.operations.calibration.camera_error import camera_error
+    from core.stages import CAMERA_ERRORS
+
+    error = camera_error(cell_file, settings.camera.pose)
+    return {} if error is None else dict(zip(CAMERA_ERRORS, error, strict=True))
 
 
 def _unconnected(settings: CellSettings) -> Cell:

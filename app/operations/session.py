@@ -12,6 +12,7 @@ from app.library.places import cup_runs_folder
 from app.library.session_folder import preset_of, remember_parameters, remembered_parameters
 from core.parameters import Parameters
 from core.progress import Reporter
+from core.scratch import remove_left
 from core.session import Session
 from core.workers import WorkerPool
 
@@ -38,7 +39,7 @@ class SessionTask:
 def working_on(
     task: SessionTask, pool: WorkerPool, reporter: Reporter, is_existing: bool = False
 ) -> Iterator[Pipeline]:
-    """Hold the session and remember the parameters.
+    """Hold the session and remember the parameters; what a killed program left elsewhere is removed.
 
     Args:
         task: the session and its parameters.
@@ -52,6 +53,7 @@ def working_on(
     from core.imagination.kept_runs import KeptRuns
     from core.pipeline.pipeline import Pipeline
 
+    remove_left()
     with (Session.open if is_existing else Session.create_or_open)(task.folder) as session:
         remember_parameters(session.path, task.preset, task.parameters)
         preset, base = preset_of(session.path, task.preset)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from core.mesh import TriangleMesh
+from core.scratch import ScratchFolder
 
 
 @dataclass(frozen=True)
@@ -28,9 +28,9 @@ def write_body(path: Path, parts: Sequence[TriangleMesh], is_concave: bool) -> B
 @contextmanager
 def body_files(**bodies: tuple[Sequence[TriangleMesh], bool]) -> Iterator[dict[str, BodyFile]]:
     """Write bodies given as `name=(parts, is_concave)` to a folder that lives as long as the context."""
-    with tempfile.TemporaryDirectory(prefix="poursight-") as folder:
+    with ScratchFolder() as folder:
         yield {
-            name: write_body(Path(folder) / f"{name}.obj", parts, is_concave)
+            name: write_body(folder / f"{name}.obj", parts, is_concave)
             for name, (parts, is_concave) in bodies.items()
         }
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
-from weakref import finalize
 
 from core.collision import CollisionModel
 from core.imagination.body import BodyFile, write_body
@@ -17,6 +14,7 @@ from core.imagination.object_at_rest import ObjectAtRest
 from core.parameters import Parameters
 from core.parameters.bodies import CupParameters
 from core.progress import Reporter
+from core.scratch import ScratchFolder
 from core.workers import Task, TaskRunner
 
 
@@ -24,7 +22,7 @@ class BodyFiles:
     """The bodies that the workers read, each written once, in a folder that lives as long as this."""
 
     def __init__(self) -> None:
-        self._folder: Path | None = None
+        self._folder: ScratchFolder | None = None
         self._objects: dict[int, tuple[CollisionModel, BodyFile]] = {}
         self._cups: dict[CupParameters, BodyFile] = {}
 
@@ -44,9 +42,8 @@ class BodyFiles:
 
     def _new(self, name: str) -> Path:
         if self._folder is None:
-            self._folder = Path(tempfile.mkdtemp(prefix="poursight-"))
-            finalize(self, shutil.rmtree, self._folder, ignore_errors=True)
-        return self._folder / f"{name}.obj"
+            self._folder = ScratchFolder()
+        return self._folder.path / f"{name}.obj"
 
 
 SpareTask = tuple[Task, Callable[[Any], None]]

@@ -25,7 +25,7 @@ from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
 from core.imagination.rendering.shapes import cup_surface
 from core.imagination.results import POURS_FILE, Drop, PourGrid
-from core.imagination.risk.drawing import with_scan_error
+from core.imagination.risk.drawing import with_camera_error, with_scan_error
 from core.imagination.risk.tries import Tries, imagine_risk, try_pours
 from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions, feasible_pours
@@ -37,8 +37,11 @@ from core.progress import Reporter
 from core.quality.measures import ScanQuality
 from core.reconstruction.colors import ModelColors
 from core.reconstruction.result import Reconstruction
-from core.stages import MESH, SCAN
+from core.stages import CAMERA_ERRORS, MESH, SCAN
 from core.workers import RunHere, Task, TaskRunner
+
+_LARGEST_CAMERA_ERROR = 0.1
+"""In metres and radians: what is larger comes from no calibration."""
 
 
 @dataclass
@@ -243,7 +246,15 @@ def parameters_of_tries(given: Given, grid: PourGrid) -> Parameters:
     if not isinstance(surface, Reconstruction):
         return parameters
     health = surface.pose_health
-    return with_scan_error(parameters, health.sd_height_m, len(health.views))
+    parameters = with_scan_error(parameters, health.sd_height_m, len(health.views))
+    return with_camera_error(parameters, *(_known_error(given.scan_facts, name) for name in CAMERA_ERRORS))
+
+
+def _known_error(facts: dict[str, Any], name: str) -> float:
+    """An error in a scan's record; none where it is not known: a scan from elsewhere, or an older one."""
+    value = facts.get(name, 0.0)
+    is_error = isinstance(value, int | float) and 0 <= value <= _LARGEST_CAMERA_ERROR
+    return float(value) if is_error else 0.0
 
 
 def with_n_pour(parameters: Parameters, n_pour: int) -> Parameters:

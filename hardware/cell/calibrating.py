@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from core.calibration.board import BoardSpec
@@ -25,18 +27,32 @@ def open_calibration_cell(settings: CellSettings, board: BoardSpec) -> Cell:
         InputError: a device is of an unknown kind.
     """
     if not settings.has_simulated_object:
-        cell = open_cell(settings)
-        cell.scene = board_scene(settings)
-        return cell
-    place, simulation = settings.place, settings.simulation
-    world = World(None, np.array([*place.platform_center_m[:2], place.table_height_m]))
-    cell = open_cell(settings, world)
-    cell.scene = board_scene(settings)
+        return facing_board(open_cell(settings), board)
+    return facing_board(open_cell(settings, _empty_world(settings)), board)
+
+
+def facing_board(cell: Cell, board: BoardSpec) -> Cell:
+    """Return a cell, connected or not, as it is when nothing but its board lies there; see above."""
+    settings = cell.settings
+    scene = board_scene(settings)
+    if not settings.has_simulated_object:
+        return replace(cell, scene=scene)
+    simulation = settings.simulation
     set_up = simulation.set_up or _as_believed(settings)
-    noise = None if simulation.is_perfect else simulation.noise
-    printed = with_square(board, set_up.square_m)
-    cell.camera = SimulatedBoardCamera(world, cell.robot, ARMS[settings.robot.model], set_up, printed, noise)
-    return cell
+    camera = SimulatedBoardCamera(
+        _empty_world(settings),
+        cell.robot,
+        ARMS[settings.robot.model],
+        set_up,
+        with_square(board, set_up.square_m),
+        None if simulation.is_perfect else simulation.noise,
+    )
+    return replace(cell, scene=scene, camera=camera)
+
+
+def _empty_world(settings: CellSettings) -> World:
+    place = settings.place
+    return World(None, np.array([*place.platform_center_m[:2], place.table_height_m]))
 
 
 def _as_believed(settings: CellSettings) -> SetUp:

@@ -57,7 +57,7 @@ def main() -> None:
     for number in range(1, kills + 1):
         after_s = pick.uniform(1.0, LONGEST_S)
         with tempfile.TemporaryDirectory() as home:
-            problems, told = _kill_once(Path(home), after_s)
+            problems, told = kill_once(Path(home), after_s)
         failures += bool(problems)
         print(
             f"{number:2}: killed after {after_s:4.1f} s; {told}{' PROBLEM: ' if problems else ''}{problems}"
@@ -66,9 +66,12 @@ def main() -> None:
     sys.exit(bool(failures))
 
 
-def _kill_once(home: Path, after_s: float) -> tuple[str, str]:
-    """Return what was wrong (empty if nothing) and what was found."""
+def kill_once(home: Path, after_s: float) -> tuple[str, str]:
+    """Kill once; return what was wrong (empty if nothing) and what was found."""
+    temporary = home / "temporary"
+    temporary.mkdir()
     environment = os.environ | {
+        "TMPDIR": str(temporary),
         "QT_QPA_PLATFORM": "offscreen",
         "XDG_CONFIG_HOME": str(home / "config"),
         SESSIONS_VARIABLE: str(home / "sessions"),
@@ -89,6 +92,9 @@ def _kill_once(home: Path, after_s: float) -> tuple[str, str]:
     offered, stages = _look(environment)
     if sessions and is_killed and "was ended while" not in offered:
         problems.append("the next start offered nothing")
+    left = sorted(path.name for path in temporary.iterdir())
+    if left:
+        problems.append(f"left in the temporary folder: {', '.join(left)}")
     return "; ".join(problems), stages or "before a session"
 
 

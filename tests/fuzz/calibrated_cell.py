@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from app.operations.calibration.around import calibrated_fit, calibrated_run
+from app.operations.calibration.around import calibrated_cell
 from app.operations.calibration.devices import device_table
 from app.operations.calibration.provenance import (
     RESULT,
@@ -123,7 +123,7 @@ def damaged_calibration(base: Path, folder: Path, pick: Random) -> Iterator[Call
     if not replaced(path, pick):
         path.write_bytes(damaged_json(path.read_bytes(), pick))
     yield lambda: steps(cell)
-    yield lambda: calibrated_fit(*calibrated_run(cell, read_cell(cell)), BoardSpec(), _INTRINSICS)
+    yield lambda: calibrated_cell(cell).fit(_INTRINSICS)
     yield lambda: read_reference(cell)
     for step in _WITH_LOOKS:
         yield lambda step=step: [read_looks(run) for run in runs(cell, step)]

@@ -12,10 +12,10 @@ from typing import Any
 import cv2
 import numpy as np
 
+from app.operations.animating import animated
 from app.operations.arm import connected
 from app.operations.calibration.provenance import new_run, write_looks
 from app.operations.scan_run import ScanOperator
-from app.operations.scanning import animated
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Collection, Look
 from core.calibration.detection import Detection, detect_board, gray, measured_square_m
@@ -202,16 +202,40 @@ def capturing(
         raise InputError(f"The {settings.name} plays back a recorded scan; it cannot be calibrated.")
     if settings.robot.is_real and operator is None:
         raise InputError(f"Nobody is there to confirm the motions of the arm of the {settings.name}.")
+    shown = animated(settings) if observer.is_watching else settings
+    with (
+        connected(open_calibration_cell(shown, board), operator, reporter) as cell,
+        observer.opened(cell),
+        capturing_in(cell, cell_file, board, step, facts, reporter, operator, observer, n_wanted) as capture,
+    ):
+        yield capture
+
+
+@contextmanager
+def capturing_in(
+    cell: Cell,
+    cell_file: Path,
+    board: BoardSpec,
+    step: str,
+    facts: dict[str, Any],
+    reporter: Reporter,
+    operator: ScanOperator | None,
+    observer: CaptureObserver,
+    n_wanted: int,
+) -> Iterator[Capture]:
+    """Let a cell look at the board that is connected and followed already.
+
+    Raises:
+        PoursightError: the camera gives no image, or the disk refuses.
+    """
+    settings = cell.settings
     with ExitStack() as stack:
-        shown = animated(settings) if observer.is_watching else settings
-        cell = stack.enter_context(connected(open_calibration_cell(shown, board), operator, reporter))
-        stack.enter_context(observer.opened(cell))
         reporter.raise_if_cancelled()  # by a stop that came before there was an arm
         first = cell.camera.capture()
         folder = new_run(cell_file, step)
         moving: Moving = PlainMoving(cell, reporter)
         if settings.robot.is_real:
-            assert operator is not None, "refused above"
+            assert operator is not None, "refused before it was connected"
             log = stack.enter_context(RunLog(folder / "motion"))
             name = cell.robot.name
             moving = WatchedMoving(cell, log, reporter, lambda route: operator.confirm_route(route, name))

@@ -5,27 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from app.operations.calibration import step_names
 from app.operations.calibration.around import (
     N_VIEWS,
-    calibrated_fit,
-    calibrated_run,
+    calibrated_cell,
     lay_simulated_board,
     look_around,
+    looking,
 )
-from app.operations.calibration.capture import NOBODY, CaptureObserver, capturing
-from app.operations.calibration.hand_eye import entered_board
+from app.operations.calibration.capture import NOBODY, CaptureObserver
 from app.operations.calibration.provenance import RESULT, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.checking import Agreement, check_agreement
 from core.files import write_json
 from core.progress import Reporter
 from core.session import explained
-from hardware.cell import read_cell
 
 _SIMULATED_MOVE_M, _SIMULATED_TURN_RAD = np.array([-0.05, 0.04, 0.004]), 2.2
 
@@ -64,19 +61,16 @@ def check_cell(
     Raises:
         PoursightError: the sentence says what is in the way.
     """
-    settings, board = read_cell(cell_file), entered_board(cell_file)
-    calibrated, table = calibrated_run(cell_file, settings)
-    facts: dict[str, Any] = {"board": asdict(board), "hand_eye": calibrated.name}
-    if not settings.has_simulated_object:
-        moved()
-    with capturing(
-        cell_file, settings, board, step_names.CHECK, facts, reporter, operator, observer, N_VIEWS
+    calibrated = calibrated_cell(cell_file)
+    settings, board = calibrated.settings, calibrated.board
+    with looking(
+        calibrated, cell_file, step_names.CHECK, reporter, operator, moved, observer, N_VIEWS
     ) as capture:
         if settings.has_simulated_object:
             middle_m = settings.place.platform_center_m + _SIMULATED_MOVE_M
             lay_simulated_board(capture.cell, middle_m, _SIMULATED_TURN_RAD)
         views = look_around(capture)
-    fit = calibrated_fit(calibrated, table, board, capture.collection.intrinsics)
+    fit = calibrated.fit(capture.collection.intrinsics)
     found = Check(capture.folder, len(views), check_agreement(fit, views, board))
     result = {"time": now(), "n_views": found.n_views, "agreement": asdict(found.agreement)}
     with explained(found.folder):

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.operations.calibration import step_names
-from app.operations.calibration.around import calibrated_run, poses_around
-from app.operations.calibration.capture import NOBODY, Capture, CaptureObserver, capturing, find_board
-from app.operations.calibration.hand_eye import entered_board
+from app.operations.calibration.around import calibrated_cell, looking, poses_around
+from app.operations.calibration.capture import NOBODY, Capture, CaptureObserver, capturing_in, find_board
 from app.operations.calibration.provenance import RESULT, latest_result, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
@@ -20,10 +19,14 @@ from core.calibration.drift import N_IMAGES, Drift, StillLook, measure_drift, st
 from core.errors import InputError, MotionError, StageError
 from core.files import reading, write_json
 from core.geometry import FloatArray
+from core.motion.clearance import MotionScene
+from core.motion.joint_path import check_path
 from core.progress import Reporter
 from core.session import explained
-from hardware.cell import read_cell
-from hardware.cell.settings import ScanSettings
+from hardware.cell import Cell
+from hardware.cell.calibrating import facing_board
+from hardware.cell.scene import motion_scene, object_space
+from hardware.cell.settings import CellSettings, ScanSettings
 
 
 @dataclass(frozen=True)
@@ -60,13 +63,9 @@ def store_reference(
     Raises:
         PoursightError: the sentence says what is in the way.
     """
-    settings, board = read_cell(cell_file), entered_board(cell_file)
-    calibrated, _ = calibrated_run(cell_file, settings)
-    facts: dict[str, Any] = {"board": asdict(board), "hand_eye": calibrated.name}
-    if not settings.has_simulated_object:
-        laid()
-    with capturing(
-        cell_file, settings, board, step_names.REFERENCE, facts, reporter, operator, observer, 1
+    calibrated = calibrated_cell(cell_file)
+    with looking(
+        calibrated, cell_file, step_names.REFERENCE, reporter, operator, laid, observer, 1
     ) as capture:
         find_board(capture)
         joints = _best_pose(capture)
@@ -105,43 +104,57 @@ def read_reference(cell_file: Path) -> Reference | None:
 
 
 def check_drift(
-    cell_file: Path, reporter: Reporter, operator: ScanOperator | None, observer: CaptureObserver = NOBODY
+    cell: Cell, cell_file: Path, reporter: Reporter, operator: ScanOperator | None
 ) -> Drift | None:
     """Take the reference view again; warn if the camera has moved, refuse if it has moved far.
 
+    Whatever stands on the platform is kept clear of: its size is not known yet.
+
     Args:
-        cell_file: of the cell.
+        cell: connected.
+        cell_file: of it.
         reporter: receives the warning, and may cancel it.
         operator: confirms what a real arm does.
-        observer: of whoever follows it.
 
     Returns:
         by how much it moved; none if no look is stored.
 
     Raises:
         StageError: it moved so far that a scan would be worth nothing, or the board is not seen.
+        MotionError: there is no clear way to where the look was taken.
         PoursightError: see `Capture.look_still`.
     """
     reference = read_reference(cell_file)
     if reference is None:
         return None
-    settings, facts = read_cell(cell_file), {"board": asdict(reference.board)}
-    with capturing(
-        cell_file, settings, reference.board, step_names.DRIFT, facts, reporter, operator, observer, 1
+    settings, facts = cell.settings, {"board": asdict(reference.board)}
+    there = replace(facing_board(cell, reference.board), scene=_scene_with_object(settings))
+    with capturing_in(
+        there, cell_file, reference.board, step_names.DRIFT, facts, reporter, operator, NOBODY, 1
     ) as capture:
-        try:
-            look = still_look(capture.look_still(reference.joints_rad, N_IMAGES))
-        except StageError as error:
-            raise StageError(
-                f"The board of the reference view is not seen as it was ({error}) Put it back and calibrate "
-                "anew, or undo the reference of this cell."
-            ) from error
+        look = _look_again(capture, reference.joints_rad)
     drift = measure_drift(reference.look, look, reference.board, capture.lens)
     table = {"time": now(), "shift_m": drift.shift_m.tolist(), "turn_rad": drift.turn_rad.tolist()}
     with explained(capture.folder):
         write_json(capture.folder / RESULT, table | capture.facts | _look_table(look))
     judge_drift(drift, settings.scan, reporter)
     return drift
+
+
+def _look_again(capture: Capture, joints_rad: FloatArray) -> StillLook:
+    where = check_path(capture.cell.scene, joints_rad, capture.cell.settings.scan.min_clearance_m)
+    if where.problem is not None:
+        raise MotionError(
+            f"The reference view was taken from where an object may stand ({where.problem}); store another "
+            "one, or undo the reference of this cell."
+        )
+    try:
+        return still_look(capture.look_still(joints_rad, N_IMAGES))
+    except StageError as error:
+        raise StageError(
+            f"The board of the reference view is not seen as it was ({error}) Put it back and calibrate "
+            "anew, or undo the reference of this cell."
+        ) from error
 
 
 def judge_drift(drift: Drift, limits: ScanSettings, reporter: Reporter) -> None:
@@ -164,10 +177,18 @@ def judge_drift(drift: Drift, limits: ScanSettings, reporter: Reporter) -> None:
 
 
 def _best_pose(capture: Capture) -> FloatArray:
-    poses = poses_around(capture, 1)
+    poses = poses_around(capture, 1, _scene_with_object(capture.cell.settings))
     if not poses:
-        raise MotionError("The arm reaches no place from which the board is seen well; lay it elsewhere.")
+        raise MotionError(
+            "The arm reaches no place from which the board is seen well past an object on the platform; lay "
+            "it elsewhere."
+        )
     return poses[0].joints_rad
+
+
+def _scene_with_object(settings: CellSettings) -> MotionScene:
+    """What must not be touched when a scan begins: an object may fill all the space there is for one."""
+    return motion_scene(settings, object_space(settings))
 
 
 def _look_table(look: StillLook) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +12,13 @@ import numpy as np
 from app.operations.calibration import step_names
 from app.operations.calibration.around import (
     N_VIEWS,
-    calibrated_fit,
-    calibrated_run,
+    calibrated_cell,
     lay_simulated_board,
     look_around,
+    looking,
 )
-from app.operations.calibration.capture import NOBODY, CaptureObserver, capturing
+from app.operations.calibration.capture import NOBODY, CaptureObserver
 from app.operations.calibration.cell_file import write_place
-from app.operations.calibration.hand_eye import entered_board
 from app.operations.calibration.provenance import RESULT, now, versions
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
@@ -29,7 +28,7 @@ from core.files import write_json
 from core.geometry import FloatArray, transform_points
 from core.progress import Reporter
 from core.session import explained
-from hardware.cell import Cell, read_cell
+from hardware.cell import Cell
 from hardware.cell.settings import CellSettings, PlaceSettings
 
 USUAL_THICKNESS_M = 0.004
@@ -80,18 +79,16 @@ def measure_table(
     Raises:
         PoursightError: the sentence says what is in the way; the file stays as it was.
     """
-    settings, board = read_cell(cell_file), entered_board(cell_file)
-    calibrated, table = calibrated_run(cell_file, settings)
-    facts: dict[str, Any] = {"board": asdict(board), "hand_eye": calibrated.name, "thickness_m": thickness_m}
-    if not settings.has_simulated_object:
-        laid()
-    with capturing(
-        cell_file, settings, board, step_names.TABLE, facts, reporter, operator, observer, N_VIEWS
-    ) as capture:
+    calibrated = calibrated_cell(cell_file)
+    settings, board = calibrated.settings, calibrated.board
+    with looking(
+        calibrated, cell_file, step_names.TABLE, reporter, operator, laid, observer, N_VIEWS,
+        {"thickness_m": thickness_m},
+    ) as capture:  # fmt: skip
         if settings.has_simulated_object:
             _lay_on_platform(capture.cell, thickness_m)
         views = look_around(capture)
-    fit = calibrated_fit(calibrated, table, board, capture.collection.intrinsics)
+    fit = calibrated.fit(capture.collection.intrinsics)
     T_base_board, ratio = locate_board(fit, views, board)
     _refuse_poor(ratio, _tilt_rad(T_base_board))
     found = _found(capture.folder, len(views), settings, board, T_base_board, thickness_m)

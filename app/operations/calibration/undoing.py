@@ -10,10 +10,11 @@ from typing import Any
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import write_hand_eye, write_place, write_views
 from app.operations.calibration.hand_eye import is_same
-from app.operations.calibration.provenance import latest_result, read_boards, withdraw, write_boards
+from app.operations.calibration.provenance import RESULT, latest_result, read_boards, withdraw, write_boards
 from app.operations.calibration.table import is_in_file
 from app.operations.calibration.views import are_in_file
 from core.errors import InputError
+from core.files import reading
 from hardware.cell import read_cell
 from hardware.cell.settings import CellSettings
 
@@ -56,12 +57,16 @@ def undo(cell_file: Path, step: str) -> None:
     folder, table = latest
     if step in _WRITINGS:
         writing = _WRITINGS[step]
-        if not writing.is_there(read_cell(cell_file), table["after"]):
+        with reading(folder / RESULT):
+            before, time = table["before"], table["time"]
+            is_there = writing.is_there(read_cell(cell_file), table["after"])
+        if not is_there:
             raise InputError(
-                f"The values that the step '{step}' wrote into {cell_file} were changed since "
-                f"{table['time']}; correct them there."
+                f"The values that the step '{step}' wrote into {cell_file} were changed since {time}; "
+                "correct them there."
             )
-        writing.write(cell_file, table["before"])
+        with reading(folder / RESULT):
+            writing.write(cell_file, before)
     withdraw(folder)
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -17,6 +15,7 @@ from core.pipeline.given_mesh import GivenMesh
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
+from core.scratch import ScratchFolder
 from hardware.cell.scene import object_space
 from hardware.cell.settings import CellSettings, PlaceSettings
 from hardware.scanning.simulated import simulate_scan, simulated_cell
@@ -53,8 +52,8 @@ def mesh_of_content(content: bytes, ending: str) -> TriangleMesh:
     Raises:
         InputError: the content cannot be used.
     """
-    with tempfile.TemporaryDirectory(prefix="poursight-") as folder:
-        path = Path(folder) / f"object{ending}"
+    with ScratchFolder() as folder:
+        path = folder / f"object{ending}"
         path.write_bytes(content)
         return read_mesh(path, Reporter())
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
 
 from core.imagination.rendering.camera import aabb_corners, frame
 from core.imagination.rendering.scene import EGL, TINY, Scene
+from core.scratch import ScratchFolder
 
 _LONGEST_S = 30.0
 _DEVICE = re.compile(rb"GL_RENDERER=(.+)")
@@ -27,9 +27,9 @@ def renderer_name() -> str:
     """
     try:
         # The folder is made here, because the other process may not live to remove it.
-        with tempfile.TemporaryDirectory(prefix="poursight-") as folder:
+        with ScratchFolder() as folder:
             probe = subprocess.run(
-                [sys.executable, "-m", "core.imagination.rendering.doctor", folder],
+                [sys.executable, "-m", "core.imagination.rendering.doctor", str(folder)],
                 stdout=subprocess.PIPE,
                 stderr=subprocess.DEVNULL,
                 timeout=_LONGEST_S,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 
 from core.errors import WorkerError
@@ -14,6 +13,7 @@ from core.imagination.results import Containability, PourChoice, PourGrid
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.progress import Reporter
+from core.scratch import ScratchFolder
 from core.workers import Task, TaskRunner
 
 STAGE = "evidence"
@@ -48,15 +48,15 @@ def render_evidence(
         return Evidence(files, parts[0].renderer if parts else "")
 
     # The folder is the parent's, so that it goes even when a worker is killed.
-    with tempfile.TemporaryDirectory(prefix="poursight-", ignore_cleanup_errors=True) as folder:
+    with ScratchFolder() as folder:
         try:
-            return render(Path(folder), with_egl=True)
+            return render(folder, with_egl=True)
         except WorkerError:
             # Bullet's EGL plugin ends the process when the graphics driver is broken.
             reporter.warn(
                 "Drawing with the graphics driver (EGL) failed; drawing continues without it, more slowly."
             )
-            return render(Path(folder), with_egl=False)
+            return render(folder, with_egl=False)
 
 
 def _tasks(

@@ -73,7 +73,27 @@ def with_scan_error(parameters: Parameters, pose_sd_m: float | None, n_views: in
     """
     if pose_sd_m is None or n_views == 0:
         return parameters
-    error_m = hypot(parameters.risk.object_error_m, pose_sd_m / sqrt(n_views))
-    return parameters.model_copy(
-        update={"risk": parameters.risk.model_copy(update={"object_error_m": error_m})}
-    )
+    return _with_object_error(parameters, pose_sd_m / sqrt(n_views), 0.0)
+
+
+def with_camera_error(parameters: Parameters, error_m: float, error_rad: float) -> Parameters:
+    """Return the parameters with the risk's object errors raised by what the camera leaves open.
+
+    A wall of the object is seen from its own side only, so that the error is that of one view: it does not
+    fall with their number.
+
+    Args:
+        parameters: of the imagination.
+        error_m: SD along an axis of where a view sees the object.
+        error_rad: SD about an axis of how it sees it turned.
+    """
+    return _with_object_error(parameters, error_m, error_rad)
+
+
+def _with_object_error(parameters: Parameters, error_m: float, error_rad: float) -> Parameters:
+    risk = parameters.risk
+    errors = {
+        "object_error_m": hypot(risk.object_error_m, error_m),
+        "object_error_rad": hypot(risk.object_error_rad, error_rad),
+    }
+    return parameters.model_copy(update={"risk": risk.model_copy(update=errors)})

@@ -304,3 +304,27 @@ def test_a_file_that_is_there_is_not_replaced_and_nothing_is_rendered_before(pla
 def test_the_answer_may_go_to_stdout_from_a_folder_that_takes_no_file(place, monkeypatch):
     monkeypatch.chdir("/proc/self")
     assert said(monkeypatch, "imagine", str(place.mesh), "--json", "-") == (None, "")
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (["{long}"], "No such command"),
+        (["demo", "--{long}"], "No such option"),
+        (["demo", "--workers", "{long}"], "--workers"),
+        (["demo", "--seed={lines}"], "--seed"),
+        (["evaluate", "objects", "--out=o", "--input", "{long}"], "--input"),
+        (["cell", "board", "bench", "--paper", "{long}"], "--paper"),
+        (["cell", "board", "bench", "--measured-mm", "{long}"], "--measured-mm"),
+        (["demo", *["{long}"] * 9], "unexpected extra argument"),
+        (["imagine"], "SESSION|MESH"),
+        (["demo", "--workers"], "--workers"),
+        (["cell"], "Missing command"),
+    ],
+)
+def test_words_that_no_command_has_are_quoted_in_part(words, named, monkeypatch):
+    filled = [word.format(long="x y/" * 2000, lines="1\n" * 400) for word in words]
+    code, sentence = said(monkeypatch, *filled)
+    assert code == 2
+    assert named in sentence and sentence.endswith("--help'."), sentence
+    assert len(sentence) <= LONGEST_SENTENCE and "\n" not in sentence, sentence

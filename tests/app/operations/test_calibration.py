@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from app.operations.calibration import step_names
+from app.operations.calibration.camera_error import camera_error
 from app.operations.calibration.capture import CaptureObserver
 from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
 from app.operations.calibration.check import check_cell
@@ -72,6 +73,11 @@ def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
     assert states(path) == {"board": StepState.DONE, "hand-eye": StepState.DONE, "check": StepState.OPEN}
     _, looks = read_looks(found.folder)
     assert len(list(found.folder.glob("view-*.png"))) == sum(look.view is not None for look in looks)
+
+    error_m, error_rad = camera_error(path, after.camera.pose)
+    assert error_m * np.sqrt(3) == pytest.approx(found.bounds.expected_pouring_m)
+    assert found.bounds.angle_rad / 4 < error_rad < found.bounds.angle_rad
+    assert camera_error(path, before.camera.pose) is None, "nobody calibrated that one"
 
     checked = check_cell(path, Reporter(), None, lambda: None)
     assert checked.agreement.is_good and checked.agreement.rms_m < 0.002

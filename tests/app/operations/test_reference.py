@@ -1,25 +1,36 @@
 """The reference view: what a scan does when the camera did not move, moved a little, or moved far."""
 
+import json
 import shutil
 
 import numpy as np
 import pytest
 
-from app.operations.calibration import step_names
+from app.operations.calibration import reference, step_names
 from app.operations.calibration.cell_file import new_cell
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import RESULT, runs
-from app.operations.calibration.reference import check_drift, read_reference, store_reference
+from app.operations.calibration.reference import read_reference, store_reference
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
 from core.calibration.rig import exp_pose
-from core.errors import InputError, SessionError, StageError
+from core.errors import InputError, MotionError, SessionError, StageError
+from core.motion.joint_path import check_path
 from core.progress import Reporter
 from hardware.cameras.simulated_board import SimulatedBoardCamera
+from hardware.cell import read_cell
+from hardware.cell.calibrating import open_calibration_cell
+from hardware.cell.scene import motion_scene, object_space
 
 pytestmark = pytest.mark.system
 N_VIEWS = 8
+
+
+def check_drift(path, reporter, operator):
+    """As a scan does, in its own cell."""
+    with open_calibration_cell(read_cell(path), BoardSpec()) as cell:
+        return reference.check_drift(cell, path, reporter, operator)
 
 
 class Listening(Reporter):
@@ -123,3 +134,21 @@ def test_a_damaged_look_is_named(referred):
     (folder / RESULT).write_text((folder / RESULT).read_text().replace('"ids"', '"idz"'))
     with pytest.raises(SessionError, match=r"result\.json is damaged"):
         read_reference(referred)
+
+
+def test_a_look_is_never_taken_from_where_an_object_may_stand(referred):
+    [folder] = runs(referred, step_names.REFERENCE)
+    record = json.loads((folder / RESULT).read_text())
+    clear = check_path(object_scene(referred), np.array(record["joints_rad"]), 0.02)
+    assert clear.problem is None, "a reference view keeps clear of all that may stand on the platform"
+    low = read_cell(referred).scan.views_rad[0]
+    assert check_path(object_scene(referred), np.array(low), 0.02).problem is not None
+    (folder / RESULT).write_text(json.dumps(record | {"joints_rad": low}))
+    with pytest.raises(MotionError, match=r"from where an object may stand .* store another one"):
+        check_drift(referred, Reporter(), None)
+    assert runs(referred, step_names.DRIFT)[-1].is_dir()
+
+
+def object_scene(path):
+    settings = read_cell(path)
+    return motion_scene(settings, object_space(settings))

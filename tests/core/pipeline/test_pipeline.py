@@ -1,12 +1,15 @@
 """Stale and fresh: a changed parameter makes the stages after it stale, and nothing else."""
 
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from core.errors import Cancelled
 from core.parameters import Parameters, apply_settings
 from core.pipeline.pipeline import Pipeline
+from core.pipeline.running import parameters_of_tries
 from core.progress import Reporter
 from core.session import Session
 from core.workers import WorkerPool
@@ -147,6 +150,25 @@ def test_a_loaded_imagination_is_the_one_that_was_run(session, pool):
     assert (loaded.grid.n_in == run.grid.n_in).all()
     assert (loaded.choice.i, loaded.choice.j) == (run.choice.i, run.choice.j)
     assert loaded.choice.T_world_cup == pytest.approx(run.choice.T_world_cup)
+
+
+@pytest.mark.parametrize(
+    ("facts", "more_m"),
+    [
+        ({"camera_error_m": 0.004, "camera_error_rad": 0.01}, 0.004),
+        ({}, 0.0),
+        ({"camera_error_m": "far", "camera_error_rad": None}, 0.0),
+        ({"camera_error_m": -1.0, "camera_error_rad": float("nan")}, 0.0),
+    ],
+)
+def test_pours_are_tried_with_the_error_of_the_camera_that_scanned(facts, more_m, imagined_session, pool):
+    pipeline = pipeline_of(imagined_session, pool)
+    given = pipeline._given("risk")
+    grid = given.result("pouring")
+    usual = parameters_of_tries(given, grid).risk
+    raised = parameters_of_tries(replace(given, scan_facts=facts), grid).risk
+    assert raised.object_error_m == pytest.approx(np.hypot(usual.object_error_m, more_m))
+    assert (raised.object_error_rad > usual.object_error_rad) == bool(more_m)
 
 
 def test_a_record_tells_what_a_stage_was_made_from(imagined_session):

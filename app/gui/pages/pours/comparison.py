@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from functools import partial
 from math import degrees, pi, radians
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from PySide6.QtCore import QCoreApplication, QObject, Signal
@@ -35,6 +34,7 @@ from core.parameters import apply_settings
 from core.pipeline.session_view import IMAGINED, SessionView
 from core.report import place_text
 from core.report.sentences import ratio_text
+from core.scratch import ScratchFolder
 
 NOTHING, FIXED, BEFORE, OTHER = range(4)
 SAME_DIRECTION_RAD = np.radians(0.5)
@@ -152,15 +152,15 @@ class VariantRun(QObject):
         super().__init__(parent)
         self._desk = desk
         self._page = page
-        self._home: TemporaryDirectory[str] | None = None
+        self._home: ScratchFolder | None = None
 
     def start(self, theta_rad: float) -> None:
         """Imagine the session's object with a fixed direction; nothing happens while a job is under way."""
         if not self._desk.jobs.is_idle:
             return
         task = self._desk.workspace.task()
-        self._home = TemporaryDirectory(prefix="poursight-variant-", ignore_cleanup_errors=True)
-        copy = partial(scratch_session, task.folder, Path(self._home.name))
+        self._home = ScratchFolder()
+        copy = partial(scratch_session, task.folder, self._home.path)
         self._desk.background.run("scratch", copy, lambda scratch: self._imagine(scratch, task, theta_rad))
 
     def _imagine(self, scratch: Path, task: SessionTask, theta_rad: float) -> None:

@@ -3,7 +3,7 @@ import pytest
 
 from core.geometry import make_pose, rotation_z
 from core.imagination.packing import cup_holds
-from core.imagination.risk.drawing import draw_cups, draw_set_up, with_scan_error
+from core.imagination.risk.drawing import draw_cups, draw_set_up, with_camera_error, with_scan_error
 from core.imagination.risk.result import PourRisk
 from core.imagination.set_up import as_planned
 from core.parameters import Parameters, apply_settings
@@ -72,6 +72,14 @@ def test_a_scan_with_worse_poses_moves_the_object_farther():
     raised = with_scan_error(parameters, 0.012, 9)
     assert raised.risk.object_error_m == pytest.approx(np.hypot(0.001, 0.004))
     assert with_scan_error(parameters, None, 9) == parameters
+
+
+def test_a_camera_that_is_calibrated_worse_moves_and_turns_the_object_farther():
+    parameters = apply_settings(Parameters(), {"risk.object_error_m": 0.001, "risk.object_error_rad": 0.003})
+    raised = with_camera_error(parameters, 0.002, 0.004)
+    assert raised.risk.object_error_m == pytest.approx(np.hypot(0.001, 0.002))
+    assert raised.risk.object_error_rad == pytest.approx(0.005)
+    assert with_camera_error(parameters, 0.0, 0.0) == parameters
 
 
 def test_tries_are_spent_and_told(dish_tried, tried):
