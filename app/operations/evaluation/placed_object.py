@@ -17,6 +17,7 @@ from core.pipeline.given_mesh import GivenMesh
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
+from core.scan.model import Scan
 from hardware.cell.scene import object_space
 from hardware.cell.settings import CellSettings, PlaceSettings
 from hardware.scanning.simulated import simulate_scan, simulated_cell
@@ -109,5 +110,13 @@ def known_surface(
     """
     if source == "mesh":
         return GivenMesh(placed.true)
-    scan = simulate_scan(mesh, parameters.seed, reporter, cell=cell_for(mesh))
-    return reconstruct(scan, parameters.reconstruction, reporter)
+    return reconstruct(take_scan(mesh, parameters.seed, reporter), parameters.reconstruction, reporter)
+
+
+def take_scan(mesh: TriangleMesh, seed: int, reporter: Reporter) -> Scan:
+    """Scan an object, as `place_object` puts it there with the same seed, with noise and pose errors.
+
+    Raises:
+        PoursightError: it cannot be scanned.
+    """
+    return simulate_scan(mesh, seed, reporter, cell=cell_for(mesh))
