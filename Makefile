@@ -9,7 +9,7 @@ OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS
 TWO_AT_A_TIME = -n 2 --dist loadfile --no-loadscope-reorder
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye decision drift pour-plans pour-faults pour-soak fuzz scene-speed stop-latency window-start window-tour window-kills screenshots clean
+.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye decision drift pour-plans pour-faults pour-soak fuzz scene-speed stop-latency window-start window-tour window-kills screenshots train-appearance clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -130,6 +130,16 @@ window-kills: setup
 
 screenshots: setup-test
 	$(SCREEN) .venv/bin/python -m tests.screenshots docs/screenshots
+
+# The appearance network anew, from nothing but a seed; needs what `pip install -e '.[train]'` brings.
+TRAINED = build/appearance
+train-appearance: setup
+	@.venv/bin/python -c "import jax, optax" || { echo "First: .venv/bin/python -m pip install -e '.[train]'"; exit 1; }
+	.venv/bin/python -m training.appearance.render $(TRAINED)/examples.npz
+	.venv/bin/python -m training.appearance.train $(TRAINED)/examples.npz $(TRAINED)/trained
+	.venv/bin/python -m training.appearance.curves $(TRAINED)/trained/curves.csv docs/pictures/appearance-curves.png
+	cp $(TRAINED)/trained/weights.npz $(TRAINED)/trained/check.npz $(TRAINED)/trained/curves.csv \
+		$(TRAINED)/trained/provenance.json resources/appearance/
 
 clean:
 	rm -rf .venv build *.egg-info

@@ -105,7 +105,7 @@ def evaluate(
         labels,
         source,
         tuple(range(parameters.seed, parameters.seed + seeds)),
-        variants_of(variant or DEFAULT),
+        variants_of(variant or DEFAULT, has_images=source == "scan"),
         pours,
         name,
         parameters,

@@ -14,6 +14,7 @@ from filelock import FileLock, Timeout
 from app.operations.evaluation.engine import Engine
 from app.operations.evaluation.placed_object import Input
 from app.operations.evaluation.trial import TrialResult, TrialTask, given_up
+from core.appearance.network import weights_digest
 from core.errors import Cancelled, InputError, Remedy, SessionError
 from core.evaluation.evaluation import (
     PICTURES_FOLDER,
@@ -83,8 +84,10 @@ class EvaluationRequest:
     def key(self, sha256: str, seed: int, variant: Variant) -> str:
         """Return the digest of all that one trial depends on."""
         versions = program_versions()
+        looks = {"by_looks": variant.by_looks, "weights": weights_digest()} if variant.by_looks else {}
         return digest_of(
-            {
+            looks
+            | {
                 "mesh": sha256,
                 "source": self.source,
                 "parameters": plain(flatten(variant.of(self.seeded(seed)))),

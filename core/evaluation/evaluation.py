@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from core.errors import SessionError
+from core.evaluation.best_view import from_best_views
 from core.evaluation.labels import Label, LabelledObject
 from core.evaluation.trials import FIRST_WORLD, Trial
 from core.files import read_json, write_json
@@ -80,7 +81,7 @@ class Evaluation:
         versions: of the program and of what it computes with.
         seconds: wall-clock time of all runs together.
         workers: how many computed in the last run.
-        trials: in the order of variants, objects, seeds.
+        trials: in the order of variants, objects, seeds; what is judged by looks, from its best view.
         truth: settings of the ground-truth worlds that are not the usual ones, by name.
         worlds: the ground-truth worlds, into which pours go in turn.
     """
@@ -127,7 +128,8 @@ class Evaluation:
             for one in known.objects
             for seed in known.seeds
         )
-        return replace(known, trials=tuple(read_trial(path)[0] for path in places if path.exists()))
+        trials = tuple(read_trial(path)[0] for path in places if path.exists())
+        return replace(known, trials=from_best_views(trials))
 
 
 def trial_file(folder: Path, name: str, seed: int, variant: str) -> Path:

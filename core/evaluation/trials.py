@@ -6,11 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+from typing_extensions import override
+
 from core.evaluation.labels import Label
 
 FIRST_WORLD = "bullet"
 """The ground-truth world of evaluations that had only one."""
-Measure = Literal["Capacity share", "Omega"]
+Measure = Literal["Capacity share", "Omega", "Appearance score"]
 """What is held against the threshold."""
 
 
@@ -71,6 +73,10 @@ class Trial(Scored):
         worlds: the ground-truth world of each pour.
         spilled: candies spilled, for each pour; empty if there was none.
         in_cup: candies that stayed in the cup, for each pour.
+        view_scores: of each view that shows the object, by name: how surely the network takes it for an open
+            container (Sec. V-A); empty where physics judges.
+        view: which of them counts; none where physics judges.
+        top_down: the one that looks most steeply down, from which pours are found.
         is_restricted: whether the object belongs to the restricted set (Sec. IV-B).
         seconds: by stage; what several variants share is counted for the first of them.
         picture: name of the picture's file, or empty.
@@ -100,10 +106,23 @@ class Trial(Scored):
     worlds: tuple[str, ...] = ()
     spilled: tuple[int, ...] = ()
     in_cup: tuple[int, ...] = ()
+    view_scores: Mapping[str, float] = field(default_factory=dict)
+    view: str | None = None
+    top_down: str | None = None
     is_restricted: bool = False
     seconds: Mapping[str, float] = field(default_factory=dict)
     picture: str = ""
     problem: str = ""
+
+    @property
+    @override
+    def measure(self) -> Measure:
+        return "Appearance score" if self.view is not None else super().measure
+
+    @property
+    @override
+    def score(self) -> float | None:
+        return self.view_scores.get(self.view) if self.view is not None else super().score
 
     @property
     def is_judged_container(self) -> bool | None:
@@ -158,7 +177,7 @@ class Trial(Scored):
 
     def to_table(self) -> dict[str, Any]:
         """Return it as plain JSON."""
-        return asdict(self) | {"seconds": dict(self.seconds)}
+        return asdict(self) | {"seconds": dict(self.seconds), "view_scores": dict(self.view_scores)}
 
     @classmethod
     def from_table(cls, table: Mapping[str, Any]) -> Trial:
@@ -173,7 +192,8 @@ class Trial(Scored):
 
 def measure_of(trials: Iterable[Trial]) -> Measure:
     """Return what judges the trials of one variant; those that failed do not show it."""
-    return "Capacity share" if any(one.measure == "Capacity share" for one in trials) else "Omega"
+    found = {one.measure for one in trials} - {"Omega"}
+    return found.pop() if found else "Omega"
 
 
 def measure_word(measure: Measure) -> str:

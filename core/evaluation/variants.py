@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 from core.errors import InputError
 from core.formats import excerpt
@@ -23,6 +23,8 @@ class Variant:
         preset: whose parameters it has instead, but for the seed; none: the evaluation's.
         has_arm: whether the cell's arm pours, of what it can make along its planned path; else a cup that
             moves as imagined, wherever the best pour is.
+        by_looks: judged and poured into by the colour images, from a fixed height above the point poured at
+            ("offset") or from above the scanned object ("scan"); none: by physics.
     """
 
     name: str
@@ -30,6 +32,7 @@ class Variant:
     changes: Mapping[str, Any] = field(default_factory=dict)
     preset: str | None = None
     has_arm: bool = True
+    by_looks: Literal["offset", "scan"] | None = None
 
     def of(self, parameters: Parameters) -> Parameters:
         """Return the variant's parameters."""
@@ -70,15 +73,22 @@ VARIANTS: Mapping[str, Variant] = {
             "Imagination, Omega > 0",
             {"containability.verdict": "omega", "containability.omega_threshold": 0.0},
         ),
+        # What stands in the place of AffordanceNet: the same procedure with a network of our own.
+        Variant("appearance", "Appearance, our network", has_arm=False, by_looks="offset"),
+        Variant("appearance-3d", "Appearance w/ 3D scanning", has_arm=False, by_looks="scan"),
     )
 }
 
 
-def variants_of(names: Sequence[str]) -> tuple[Variant, ...]:
-    """Return variants by their names, in the tables' order; `all` means all of them.
+def variants_of(names: Sequence[str], *, has_images: bool = True) -> tuple[Variant, ...]:
+    """Return variants by their names, in the tables' order; `all` means all that can be had.
+
+    Args:
+        names: of variants.
+        has_images: whether the objects are scanned; without images nothing is judged by looks.
 
     Raises:
-        InputError: there is no such variant.
+        InputError: there is no such variant, or it needs images.
     """
     known = [*VARIANTS, "all"]
     unknown = next((name for name in names if name not in known), None)
@@ -88,4 +98,10 @@ def variants_of(names: Sequence[str]) -> tuple[Variant, ...]:
             f"There is no variant '{said}'; did you mean '{nearest(said, known)}'? "
             f"Known are {', '.join(known)}."
         )
-    return tuple(one for name, one in VARIANTS.items() if name in names or "all" in names)
+    blind = next(
+        (name for name in names if name != "all" and VARIANTS[name].by_looks and not has_images), None
+    )
+    if blind is not None:
+        raise InputError(f"The variant '{blind}' judges images, which only '--input scan' takes.")
+    chosen = (one for name, one in VARIANTS.items() if name in names or "all" in names)
+    return tuple(one for one in chosen if has_images or not one.by_looks)

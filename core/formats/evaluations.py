@@ -25,6 +25,7 @@ Variant = Annotated[Name, Field(max_length=30)]
 Label = Literal["container", "non-container", "ambiguous"]
 Seed = Annotated[int, Field(ge=0, le=2**32)]
 Number = Annotated[float, Field(ge=-1e9, le=1e9)]
+Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class EvaluatedObject(TypedDict):
@@ -83,6 +84,9 @@ class Trial(TypedDict):
     worlds: NotRequired[list[str]]
     spilled: NotRequired[list[Count]]
     in_cup: NotRequired[list[Count]]
+    view_scores: NotRequired[dict[str, Share]]
+    view: NotRequired[str | None]
+    top_down: NotRequired[str | None]
     is_restricted: NotRequired[bool]
     seconds: NotRequired[dict[str, Seconds]]
     picture: NotRequired[str]

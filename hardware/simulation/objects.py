@@ -1,6 +1,6 @@
 """Built-in objects, made by code: closed surfaces in metres that rest on z = 0, z up.
 
-Seven hold something as they stand, three do not.
+Seven hold something as they stand, six do not; of the last three, looks and physics may say different things.
 """
 
 from __future__ import annotations
@@ -222,6 +222,30 @@ def _block() -> TriangleMesh:
     return boxed([(0.12, 0.08, 0.0), (0.12, 0.08, 0.06)], 0.003)
 
 
+def _upturned_cup() -> TriangleMesh:
+    """A mug without a handle, upside down, 84 x 100 mm; its foot, now on top, is hollow by 3 mm."""
+    outer, inner = vessel_profile([(0.038, 0.0), (0.040, 0.004), (0.042, 0.099)], 0.004, 0.008)
+    foot = [(0.034, 0.003), (0.0345, 0.0)]
+    upright = turned([*foot, *outer, *inner])
+    top = upright.aabb_max_m[2]
+    return TriangleMesh(upright.vertices_m * [1, -1, -1] + [0, 0, top], upright.faces)
+
+
+def _holed_cup() -> TriangleMesh:
+    """A tumbler, 80 x 100 mm, whose floor has a hole of 46 mm: candies fall through as through a ring."""
+    outer, inner = vessel_profile(
+        [(0.0320, 0.0), (0.0330, 0.002), (0.0370, 0.05), (0.0400, 0.099)], 0.003, 0.005
+    )
+    return turned([(0.023, 0.0), *outer, *inner, (0.023, 0.005)], closed=True)
+
+
+def _lid() -> TriangleMesh:
+    """The lid of a pot, 170 x 47 mm, with a knob in a hollow whose edge is 3 mm high."""
+    dome = smooth([(0.083, 0.004), (0.078, 0.018), (0.070, 0.022)], 12)
+    knob = [(0.064, 0.019), (0.014, 0.019), (0.010, 0.030), (0.018, 0.038), (0.016, 0.046), (0.010, 0.047)]
+    return turned([(0.080, 0.0), (0.085, 0.0), *dome, *knob])
+
+
 BUILTIN_OBJECTS: dict[str, Callable[[], TriangleMesh]] = {
     "mug": _mug,
     "bowl": _bowl,
@@ -233,5 +257,8 @@ BUILTIN_OBJECTS: dict[str, Callable[[], TriangleMesh]] = {
     "bottle": _bottle,
     "ring": _open_ring,
     "block": _block,
+    "upturned-cup": _upturned_cup,
+    "holed-cup": _holed_cup,
+    "lid": _lid,
 }
 """Makers by name; the first is the default."""

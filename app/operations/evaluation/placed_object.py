@@ -15,6 +15,7 @@ from core.pipeline.given_mesh import GivenMesh
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
+from core.scan.model import Scan
 from core.scratch import ScratchFolder
 from hardware.cell.scene import object_space
 from hardware.cell.settings import CellSettings, PlaceSettings
@@ -108,5 +109,13 @@ def known_surface(
     """
     if source == "mesh":
         return GivenMesh(placed.true)
-    scan = simulate_scan(mesh, parameters.seed, reporter, cell=cell_for(mesh))
-    return reconstruct(scan, parameters.reconstruction, reporter)
+    return reconstruct(take_scan(mesh, parameters.seed, reporter), parameters.reconstruction, reporter)
+
+
+def take_scan(mesh: TriangleMesh, seed: int, reporter: Reporter) -> Scan:
+    """Scan an object, as `place_object` puts it there with the same seed, with noise and pose errors.
+
+    Raises:
+        PoursightError: it cannot be scanned.
+    """
+    return simulate_scan(mesh, seed, reporter, cell=cell_for(mesh))

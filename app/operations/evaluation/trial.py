@@ -3,26 +3,32 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import cycle, islice
 from time import perf_counter
 from typing import Any, TypeVar
 
+import numpy as np
+
+from app.operations.evaluation.by_looks import LookedAt, touches
 from app.operations.evaluation.ground_truth import ideal_path, planned_path, pour_into
 from app.operations.evaluation.placed_object import (
     Input,
     PlacedObject,
     cell_for,
-    known_surface,
     mesh_of_content,
     place_object,
+    take_scan,
 )
-from core.errors import Cancelled, PoursightError
+from core.appearance.looking import CONTAINS
+from core.appearance.pouring import THETA_RAD, above_box, at_offset
+from core.errors import Cancelled, InputError, PoursightError
 from core.evaluation.labels import Label
 from core.evaluation.trials import Trial
 from core.evaluation.variants import Variant
+from core.geometry import FloatArray
 from core.imagination.cup_runs import CupRuns
 from core.imagination.judgement import Judgement
 from core.imagination.results import Containability, Drop, PourChoice, PourGrid
@@ -32,11 +38,17 @@ from core.mesh import TriangleMesh
 from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters, apply_settings
+from core.parameters.imagination import PouringParameters
+from core.pipeline.given_mesh import GivenMesh
 from core.pipeline.in_memory import StageMemory
 from core.pipeline.running import Tools, with_n_pour
+from core.reconstruction.result import Reconstruction
+from core.reconstruction.stage import reconstruct
+from core.scan.model import Scan
 from core.workers import RunHere, WorkerReporter
 from hardware.cell.scene import pour_cell
 from hardware.simulation.pour_outcome.driven_path import DrivenPath
+from hardware.simulation.pour_outcome.outcome import TableOutcome
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 
 _T = TypeVar("_T")
@@ -120,12 +132,13 @@ def given_up(task: TrialTask, problem: str) -> TrialResult:
 def _facts(task: TrialTask, variant: Variant) -> dict[str, Any]:
     """What is known of a trial before it is made."""
     parameters = variant.of(task.parameters)
+    by_physics = parameters.containability.deciding_threshold
     return {
         "name": task.name,
         "label": task.label,
         "seed": parameters.seed,
         "variant": variant.name,
-        "threshold": parameters.containability.deciding_threshold,
+        "threshold": CONTAINS if variant.by_looks else by_physics,
         "n_pour": parameters.pouring.n_pour,
         "is_restricted": task.is_restricted,
     }
@@ -138,12 +151,8 @@ def _try(work: _Work, variant: Variant) -> tuple[Trial, bytes | None]:
     facts = _facts(task, variant)
     picture = None
     try:
-        found = work.judged(parameters)
-        facts |= {"n_drop": found.n_drop, "n_in": found.n_in} | _of_verdict(found.verdict)
+        picture = (_look if variant.by_looks else _imagine)(work, variant, parameters, facts)
         facts["picture"] = f"{task.name}.{parameters.seed}.{variant.name}.png"
-        picture = work.picture(parameters, found)
-        if task.n_pours > 0 and found.is_open_container:
-            facts |= work.poured(parameters, variant.has_arm)
     except Cancelled:
         raise
     except PoursightError as error:
@@ -151,6 +160,32 @@ def _try(work: _Work, variant: Variant) -> tuple[Trial, bytes | None]:
     except Exception as error:  # one object must not end the run of all others
         facts["problem"] = fault_sentence(error)
     return Trial(**facts, seconds=work.seconds), picture
+
+
+def _imagine(work: _Work, variant: Variant, parameters: Parameters, facts: dict[str, Any]) -> bytes:
+    """Judge and pour by imagination, adding to the facts; returns the picture."""
+    found = work.judged(parameters)
+    facts |= {"n_drop": found.n_drop, "n_in": found.n_in} | _of_verdict(found.verdict)
+    picture = work.picture(parameters, found)
+    if work.task.n_pours > 0 and found.is_open_container:
+        facts |= work.poured(parameters, variant.has_arm)
+    return picture
+
+
+def _look(work: _Work, variant: Variant, parameters: Parameters, facts: dict[str, Any]) -> bytes:
+    """Judge and pour by looks, adding to the facts; returns the picture.
+
+    It is poured wherever something contains, whatever the object was judged (Sec. V-B).
+    """
+    found = work.looked_at(parameters)
+    facts |= found.facts
+    if work.task.n_pours > 0 and found.point_m is not None:
+        if variant.by_looks == "offset":
+            pivot_m = at_offset(found.point_m)
+        else:
+            pivot_m = above_box(found.point_m, work.scanned_aabb_m(), parameters.pouring.pivot_height_m)
+        facts |= work.poured_by_looks(parameters, pivot_m)
+    return found.picture()
 
 
 def _of_verdict(verdict: Verdict | None) -> dict[str, Any]:
@@ -214,21 +249,11 @@ class _Work:
         if choice is None:
             return facts
         chosen, pouring = choice, with_n_pour(parameters, grid.n_pour).pouring
-        outcomes = self._once(
-            "outcome",
-            (
-                *("outcome", has_arm, pouring, choice.i, choice.j, choice.theta_rad),
-                *choice.pivot_m.tolist(),
-            ),
-            lambda: pour_into(
-                self._placed(),
-                self._path(pours, chosen, has_arm),
-                pouring,
-                [one.model_copy(update={"seed": parameters.seed}) for one in self.task.worlds.values()],
-                self.task.n_pours,
-                self._runner,
-                self._reporter,
-            ),
+        outcomes = self._outcomes(
+            ("imagined", has_arm, pouring, choice.i, choice.j, choice.theta_rad, *choice.pivot_m.tolist()),
+            lambda: self._path(pours, chosen, has_arm),
+            parameters.seed,
+            pouring,
         )
         return facts | {
             "p_chosen": float(grid.p[choice.i, choice.j]),
@@ -237,10 +262,56 @@ class _Work:
             "n_tries": 0 if risk is None else int(risk.n_tries.sum()),
             "choice": (choice.i, choice.j),
             "theta_rad": choice.theta_rad,
+            **self._of_outcomes(outcomes),
+        }
+
+    def _outcomes(
+        self, key: object, path: Callable[[], DrivenPath], seed: int, pouring: PouringParameters
+    ) -> list[TableOutcome]:
+        """Pour along a path into all worlds in turn, once for all variants whose pours are the same."""
+        worlds = [one.model_copy(update={"seed": seed}) for one in self.task.worlds.values()]
+        return self._once(
+            "outcome",
+            key,
+            lambda: pour_into(
+                self._placed(), path(), pouring, worlds, self.task.n_pours, self._runner, self._reporter
+            ),
+        )
+
+    def _of_outcomes(self, outcomes: Sequence[TableOutcome]) -> dict[str, Any]:
+        return {
             "worlds": tuple(islice(cycle(self.task.worlds), len(outcomes))),
             "spilled": tuple(outcome.n_spilled for outcome in outcomes),
             "in_cup": tuple(outcome.n_in_cup for outcome in outcomes),
         }
+
+    def looked_at(self, parameters: Parameters) -> LookedAt:
+        """Look at the scan's colour images.
+
+        Raises:
+            InputError: there are none.
+        """
+        if self.task.source == "mesh":
+            raise InputError("Looks need images; evaluate with '--input scan'.")
+        scan = self._scan()
+        return self._once("appearance", "looked at", lambda: LookedAt.of(scan, parameters.reconstruction))
+
+    def scanned_aabb_m(self) -> FloatArray:
+        """Lower and upper corner (2, 3) of the reconstructed object."""
+        mesh = self._surface().mesh
+        return np.array([mesh.aabb_min_m, mesh.aabb_max_m])
+
+    def poured_by_looks(self, parameters: Parameters, pivot_m: FloatArray) -> dict[str, Any]:
+        """Pour N_pour candies in the ground-truth simulation, unless the cup would touch the object."""
+        pouring = parameters.pouring
+        path = ideal_path(pouring, pivot_m, THETA_RAD)
+        facts: dict[str, Any] = {"theta_rad": THETA_RAD, "n_feasible": 0}
+        if touches(path, pouring.cup, self._placed().true):
+            return facts
+        outcomes = self._outcomes(
+            ("looks", pouring, *pivot_m.tolist()), lambda: path, parameters.seed, pouring
+        )
+        return facts | {"n_feasible": 1} | self._of_outcomes(outcomes)
 
     def _path(self, pours: Parameters, choice: PourChoice, has_arm: bool) -> DrivenPath:
         """The cup's: as this object's cell drives it, or as imagined."""
@@ -264,16 +335,22 @@ class _Work:
     def _stages(self) -> StageMemory:
         """The stages from the object's surface on; no variant changes how that is known."""
         if self._memory is None:
-            placed, task = self._placed(), self.task
-            surface = self._once(
-                "scan",
-                "surface",
-                lambda: known_surface(self._mesh(), placed, task.source, task.parameters, self._reporter),
-            )
-            cup_runs = _cup_runs(task.parameters.seed)
+            cup_runs = _cup_runs(self.task.parameters.seed)
             tools = Tools(self._runner, self._reporter, cup_runs=cup_runs, cell=self._cell())
-            self._memory = StageMemory(surface, tools)
+            self._memory = StageMemory(self._surface(), tools)
         return self._memory
+
+    def _surface(self) -> Reconstruction | GivenMesh:
+        """What is known of the object's surface."""
+        if self.task.source == "mesh":
+            placed = self._placed()
+            return self._once("scan", "surface", lambda: GivenMesh(placed.true))
+        scan, parameters = self._scan(), self.task.parameters.reconstruction
+        return self._once("scan", "surface", lambda: reconstruct(scan, parameters, self._reporter))
+
+    def _scan(self) -> Scan:
+        mesh, seed = self._mesh(), self.task.parameters.seed
+        return self._once("scan", "images", lambda: take_scan(mesh, seed, self._reporter))
 
     def _placed(self) -> PlacedObject:
         mesh = self._mesh()

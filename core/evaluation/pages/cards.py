@@ -88,6 +88,8 @@ def judged_sentence(trial: Trial) -> str:
         return f"Failed: {trial.problem}"
     if trial.unseen_ml is not None:
         return f"The program cannot tell: {trial.unseen_ml:.0f} ml inside were not seen."
+    if trial.view is not None:
+        return _looked_sentence(trial, trial.score)
     if trial.capacity_share is not None:
         return _capacity_sentence(trial, trial.capacity_share)
     verdict = "a container" if trial.is_judged_container else "not to be a container"
@@ -111,7 +113,8 @@ def poured_sentence(trial: Trial, n_pours: int) -> str:
     if trial.score is not None and trial.problem:
         return f"Failed: {trial.problem}"
     if trial.label == "container" and trial.n_feasible == 0:
-        return "The arm can make none of the pours, which counts as spilled."
+        who = "The arm can make none of the pours" if trial.view is None else "The cup would touch the object"
+        return f"{who}, which counts as spilled."
     if trial.label == "container" and n_pours:
         return "Not poured into, which counts as spilled."
     return ""
@@ -204,6 +207,15 @@ def _capacity_sentence(trial: Trial, share: float) -> str:
     return (
         f"{_held(trial)}{said}{_NBSP}% of its convex hull, {more} the threshold "
         f"of {than}{_NBSP}%{_strength(trial)}."
+    )
+
+
+def _looked_sentence(trial: Trial, score: float) -> str:
+    verdict = "a container" if trial.is_judged_container else "not to be a container"
+    than = "more than" if trial.is_judged_container else "not more than"
+    return (
+        f"By looks from {trial.view}: a score of {score:.3f} is {than} the threshold of "
+        f"{trial.threshold:.4g}, so it was judged {verdict}."
     )
 
 

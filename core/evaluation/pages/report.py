@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from core.evaluation.best_view import view_accuracies
 from core.evaluation.comparing import default_parameters, parameter_changes
 from core.evaluation.evaluation import Evaluation
 from core.evaluation.pages.cards import TROUBLES, State, cards_of, state_of
@@ -15,6 +16,7 @@ from core.evaluation.tables import (
     DECLINED_NOTE,
     INTERVALS_NOTE,
     MEASURES_NOTE,
+    best_view_sentence,
     classification,
     declined_text,
     interval_text,
@@ -185,6 +187,10 @@ def _remarks(evaluation: Evaluation, found: Figures) -> list[str]:
         remarks.append(f"Containers and others overlap in {what}: no threshold judges all of them right.")
     if evaluation.truth:
         remarks.append(truth_sentence(evaluation.truth))
+    for variant in evaluation.variants:
+        views = view_accuracies(evaluation.of_variant(variant))
+        if views is not None:
+            remarks.append(f"{title_of(variant)}: {best_view_sentence(views)}")
     failed = found.confusion.failed
     if failed:
         what = "judgement failed and counts" if failed == 1 else "judgements failed and count"

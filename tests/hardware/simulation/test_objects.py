@@ -82,6 +82,13 @@ def test_the_others_hold_nothing() -> None:
     assert np.isnan(depth_at_axis(builtin_object("ring")))
 
 
+def test_those_that_look_otherwise_hold_nothing() -> None:
+    """A plumb line meets the knob, the foot, or only the table; no edge is as high as half a candy."""
+    assert depth_at_axis(builtin_object("lid")) < 0.001
+    assert 0.002 < depth_at_axis(builtin_object("upturned-cup")) < 0.0035
+    assert np.isnan(depth_at_axis(builtin_object("holed-cup")))
+
+
 def test_the_vase_is_narrow_and_deep() -> None:
     mesh = builtin_object("vase")
     rim = mesh.vertices_m[mesh.vertices_m[:, 2] > mesh.aabb_max_m[2] - 0.002]

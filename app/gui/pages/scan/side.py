@@ -21,6 +21,7 @@ from typing_extensions import override
 
 from app.gui.pages.layouts import row_of
 from app.gui.pages.page import SidePanel
+from app.gui.pages.scan.appearance import AppearanceRow
 from app.gui.pages.scan.dropping import MESH_ENDINGS
 from app.gui.pages.scan.loading import object_title
 from app.gui.theme import GRID_PX
@@ -44,6 +45,7 @@ class ScanSide(SidePanel):
         take_again: the selected view.
         follow: shows the newest view again.
         import_folder, import_mesh: ask for what is to be imported.
+        appearance: switches what lies over the colour image.
         file_chosen: the path of a folder or mesh that is to be imported.
     """
 
@@ -71,6 +73,7 @@ class ScanSide(SidePanel):
         self._obstacle = text_label("obstacle", "attention")
         self._remark = text_label("remark", "muted")
         self._pictures = _Images(self._image, self._depth)
+        self.appearance = AppearanceRow()
         self._arrange()
         self.import_folder.clicked.connect(self._ask_folder)
         self.import_mesh.clicked.connect(self._ask_mesh)
@@ -83,6 +86,10 @@ class ScanSide(SidePanel):
         """Show a view's colour (H, W, 3) and depth (H, W)."""
         self._image.set_image(color)
         self._depth.set_depth(depth_m)
+
+    def show_color(self, color: npt.NDArray[np.uint8] | None) -> None:
+        """Show another colour image (H, W, 3) over the same depth."""
+        self._image.set_image(color)
 
     def caption(self, text: str) -> None:
         """Say which view is shown."""
@@ -101,6 +108,7 @@ class ScanSide(SidePanel):
         """Whether there are views to look at."""
         self._caption.setVisible(is_shown)
         self._pictures.setVisible(is_shown)
+        self.appearance.setVisible(is_shown)
 
     def _arrange(self) -> None:
         self.body.addWidget(self.choice)
@@ -108,6 +116,7 @@ class ScanSide(SidePanel):
         self.body.addWidget(self._remark)
         self.body.addWidget(self._caption)
         self.body.addWidget(self._pictures, 100)
+        self.body.addWidget(self.appearance)
         self.body.addWidget(self._problems)
         self.body.addLayout(row_of(self.take_again, self.follow))
         self.body.addStretch(1)  # takes what the pictures leave, or all when there are none

@@ -11,6 +11,7 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QImage
 
 from app.gui.desk.background import Background
+from app.gui.pages.scan.appearance import Appearance
 from app.gui.pages.scan.loading import Picture, ScanContents, load_images
 from app.gui.pages.scan.side import ScanSide
 from app.gui.remedies import worded
@@ -123,6 +124,7 @@ class ShownImages:
         self._views = views
         self._background = background
         self._shown: Picture | None = None
+        self._appearance = Appearance(side.appearance, side.show_color, background)
 
     def select(self, index: int, folder: Path | None) -> None:
         """Show a view; `folder` holds the images of a running scan."""
@@ -145,6 +147,7 @@ class ShownImages:
         if news.color is not None and news.depth_m is not None:
             self._shown = None
             self._side.show_images(news.color, news.depth_m)
+            self._appearance.follow(None, news.color)
 
     def forget(self) -> None:
         """Show nothing, and follow the newest."""
@@ -169,6 +172,7 @@ class ShownImages:
             self._side.show_images(None, None)
         else:
             self._side.show_images(*images)
+        self._appearance.follow(self._shown, None if images is None else images[0])
 
     def _fail(self, error: PoursightError) -> None:
         self._show(None)

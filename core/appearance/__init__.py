@@ -1,0 +1,1 @@
+"""Judging by looks: what the paper compares imagination with, by a network of our own (Sec. V)."""

@@ -1,0 +1,1 @@
+"""How the appearance network was trained: views rendered, labelled by geometry, and learnt from."""
