@@ -85,7 +85,7 @@ class DropReplay(QWidget):
         self.scene.fit("object")
         self._show_legend()
 
-    def show_drop(self, drop: ShownDrop, *, is_played: bool) -> None:
+    def show_drop(self, drop: ShownDrop, *, is_played: bool = False) -> None:
         """Show another drop: played from its beginning, or at its end, where the verdict is seen."""
         is_first, self._drop = self._drop is None, drop
         self._see_through.show()
