@@ -23,6 +23,9 @@ class Reporter:
     def warn(self, sentence: str) -> None:
         """Report something the user should know though the work goes on."""
 
+    def tell(self, news: object) -> None:
+        """Tell what is known before the work is done: a frozen dataclass, for faces that know it."""
+
     def cancel(self) -> None:
         """Ask the running stage to stop; safe from any thread."""
         self._cancel.set()

@@ -35,6 +35,10 @@ class Task:
     weight: float = 1.0
 
 
+Found = Callable[[int, Any], None]
+"""Called with a task's index and its result."""
+
+
 class TaskRunner(Protocol):
     """Runs tasks and hands their results back in order: a `WorkerPool`, or `RunHere`.
 
@@ -44,8 +48,10 @@ class TaskRunner(Protocol):
 
     workers: int
 
-    def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
-        """Run all tasks and return their results in order."""
+    def run(
+        self, tasks: Sequence[Task], stage: str, reporter: Reporter, found: Found | None = None
+    ) -> list[Any]:
+        """Run all tasks and return their results in order; `found` hears of each as soon as it is there."""
         ...
 
 
@@ -57,7 +63,9 @@ class RunHere:
 
     workers = 1
 
-    def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
+    def run(
+        self, tasks: Sequence[Task], stage: str, reporter: Reporter, found: Found | None = None
+    ) -> list[Any]:
         """Run all tasks and return their results in order.
 
         Raises:
@@ -69,6 +77,8 @@ class RunHere:
             reporter.raise_if_cancelled()
             reporter.progress(stage, index, len(tasks))
             results.append(task.function(*task.arguments))
+            if found is not None:
+                found(index, results[-1])
         return results
 
 
@@ -118,8 +128,10 @@ class WorkerPool:
         # through a closed one, and that is a traceback on the terminal.
         executor.shutdown()
 
-    def run(self, tasks: Sequence[Task], stage: str, reporter: Reporter) -> list[Any]:
-        """Run all tasks and return their results in order.
+    def run(
+        self, tasks: Sequence[Task], stage: str, reporter: Reporter, found: Found | None = None
+    ) -> list[Any]:
+        """Run all tasks and return their results in order; `found` hears of each as soon as it is there.
 
         Raises:
             Cancelled: the reporter was asked to stop.
@@ -130,7 +142,7 @@ class WorkerPool:
         self._shared.fractions[:] = [0.0] * _PROGRESS_SLOTS
         futures: list[Future[Any]] = []
         try:
-            self._work_through(tasks, futures, stage, reporter)
+            self._work_through(tasks, futures, stage, reporter, found)
             return [future.result() for future in futures]
         except BrokenProcessPool as error:
             self.close()
@@ -158,7 +170,12 @@ class WorkerPool:
         ]
 
     def _work_through(
-        self, tasks: Sequence[Task], futures: list[Future[Any]], stage: str, reporter: Reporter
+        self,
+        tasks: Sequence[Task],
+        futures: list[Future[Any]],
+        stage: str,
+        reporter: Reporter,
+        found: Found | None,
     ) -> None:
         """Give each process one task at a time, so that nothing waits in the executor.
 
@@ -178,7 +195,9 @@ class WorkerPool:
                 self._remember_processes()
             finished, pending = wait(pending, timeout=_POLL_S, return_when=FIRST_COMPLETED)
             for future in finished:
-                future.result()  # a failure ends the run at once
+                result = future.result()  # a failure ends the run at once
+                if found is not None and future in futures:
+                    found(futures.index(future), result)
             reporter.progress(stage, self._done(futures, tasks), total)
 
     def _done(self, futures: list[Future[Any]], tasks: Sequence[Task]) -> float:

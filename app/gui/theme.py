@@ -202,7 +202,10 @@ def style_sheet(theme: Theme) -> str:
     QPushButton:pressed {{ background: {t.line}; }}
     QPushButton:focus {{ border: 2px solid {t.accent}; padding: 4px 11px; }}
     QPushButton:disabled {{ color: {t.muted}; background: {t.window}; }}
-    QPushButton:checked {{ background: {t.accent}; color: {t.on_accent}; border-color: {t.accent}; }}
+    QPushButton:checked {{
+        background: {t.surface}; color: {t.accent}; border: 2px solid {t.accent}; font-weight: 600;
+        padding: 4px 11px;
+    }}
     QPushButton:checked:focus {{ border-color: {t.text}; }}
     QPushButton[role="primary"] {{
         background: {t.accent}; color: {t.on_accent}; border-color: {t.accent}; font-weight: 600;
@@ -216,6 +219,12 @@ def style_sheet(theme: Theme) -> str:
         background: transparent; border: none; color: {t.accent}; text-align: left; padding: 2px 0;
     }}
     QPushButton[role="link"]:focus {{ text-decoration: underline; }}
+    QPushButton[role="session"] {{
+        background: transparent; border-color: transparent; text-align: left; padding: 5px 8px;
+        font-size: 13pt; font-weight: 600;
+    }}
+    QPushButton[role="session"]:hover {{ background: {t.raised}; }}
+    QPushButton[role="session"]:focus {{ border: 2px solid {t.accent}; padding: 4px 7px; }}
     QPushButton[role="next"] {{
         background: transparent; color: {t.accent}; border: 2px solid {t.accent}; font-weight: 600;
         padding: 6px 16px;

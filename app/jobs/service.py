@@ -33,6 +33,10 @@ class JobReporter(Reporter):
         """Send it."""
         self._send(Warned(sentence))
 
+    def tell(self, news: object) -> None:
+        """Send it as an event."""
+        self.publish(news)
+
     def publish(self, payload: Any) -> None:
         """Send an event: a frozen dataclass that the page of this job knows."""
         self._send(Event(payload))
@@ -52,6 +56,10 @@ class ForwardingReporter(Reporter):
     def warn(self, sentence: str) -> None:
         """Forward it."""
         self._reporter.warn(sentence)
+
+    def tell(self, news: object) -> None:
+        """Forward it."""
+        self._reporter.tell(news)
 
     def raise_if_cancelled(self) -> None:
         """Raise `Cancelled` if somebody asked the job to stop."""

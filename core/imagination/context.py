@@ -15,7 +15,7 @@ from core.parameters import Parameters
 from core.parameters.bodies import CupParameters
 from core.progress import Reporter
 from core.scratch import ScratchFolder
-from core.workers import Task, TaskRunner
+from core.workers import Found, Task, TaskRunner
 
 
 class BodyFiles:
@@ -72,8 +72,10 @@ class ImaginationContext:
         """Return the same with other parameters."""
         return replace(self, parameters=parameters)
 
-    def run(self, tasks: Sequence[Task], stage: str) -> list[Any]:
+    def run(self, tasks: Sequence[Task], stage: str, found: Found | None = None) -> list[Any]:
         """Run tasks in the workers, the spare ones behind them; return the results of `tasks` in order.
+
+        `found` is called with each of these results as soon as it is there.
 
         Raises:
             Cancelled: somebody asked to stop.
@@ -81,7 +83,8 @@ class ImaginationContext:
         """
         spare = list(self.spare)
         self.spare.clear()
-        results = self.runner.run([*tasks, *(task for task, _ in spare)], stage, self.reporter)
+        all_tasks = [*tasks, *(task for task, _ in spare)]
+        results = self.runner.run(all_tasks, stage, self.reporter, _first(len(tasks), found))
         for (_, take), result in zip(spare, results[len(tasks) :], strict=True):
             take(result)
         return results[: len(tasks)]
@@ -94,3 +97,15 @@ class ImaginationContext:
     def cup(self) -> BodyFile:
         """Return the body of the cup."""
         return self.bodies.of_cup(self.parameters.pouring.cup)
+
+
+def _first(n: int, found: Found | None) -> Found | None:
+    """Hear of the first n tasks only."""
+    if found is None:
+        return None
+
+    def hear(index: int, result: Any) -> None:
+        if index < n:
+            found(index, result)
+
+    return hear

@@ -14,7 +14,7 @@ from core.parameters import Parameters
 from core.parameters.part import part_of
 from core.workers import Task
 
-STAGE = "pouring"
+CUP_STAGE = "cup"
 _CUP_READS = (
     "seed",
     "particle",
@@ -48,7 +48,7 @@ class CupRuns:
         missing = {key: one for key, one in zip(keys, set_ups, strict=True) if not self._knows(key)}
         tasks = [_task(context, one) for one in missing.values()]
         if tasks:
-            for key, run in zip(missing, context.run(tasks, STAGE), strict=True):
+            for key, run in zip(missing, context.run(tasks, CUP_STAGE), strict=True):
                 self._take(key, run)
         return [self._known[key] for key in keys]
 

@@ -17,16 +17,17 @@ from core.imagination.bullet_world import CHECK_STEPS, BulletWorld
 from core.imagination.context import ImaginationContext
 from core.imagination.cup import pour_duration_s
 from core.imagination.cup_run import CupRun, PouringCup
-from core.imagination.cup_runs import STAGE, CupRuns
+from core.imagination.cup_runs import CupRuns
 from core.imagination.object_at_rest import ObjectAtRest, inside_aabb
 from core.imagination.packing import pack_cup
 from core.imagination.recording import Recorder, Recording
-from core.imagination.results import Footprint, PourGrid
+from core.imagination.results import Footprint, PourGrid, PoursSoFar
 from core.imagination.rotations import multiply_quaternions, quaternion_of, yaw_quaternion
 from core.parameters import Parameters
 from core.parameters.imagination import N_INDENT, N_THETA, PouringParameters
 from core.workers import Task, report_fraction
 
+STAGE = "pouring"
 _REPORT_STEPS = 25
 
 
@@ -90,8 +91,21 @@ def imagine_pours(
                     tasks.append(full_task(target, context.cup(), packing, pour, parameters, record))
                 else:
                     tasks.append(replay_task(target, cup_runs[packing], pour.T_world_E, parameters, record))
-    outcomes: list[PourOutcome] = context.run(tasks, STAGE)
     shape = len(thetas), N_INDENT, pouring.n_packings
+    so_far = np.full(shape, np.nan)
+
+    def tell(index: int, outcome: PourOutcome) -> None:
+        so_far.reshape(-1)[index] = outcome.n_in / pouring.n_pour
+        is_known = ~np.isnan(so_far)
+        p = np.divide(
+            np.nansum(so_far, axis=2),
+            is_known.sum(axis=2),
+            out=np.full(shape[:2], np.nan),
+            where=is_known.any(axis=2),
+        )
+        context.reporter.tell(PoursSoFar(thetas, indents, p))
+
+    outcomes: list[PourOutcome] = context.run(tasks, STAGE, tell)
     n_in = np.array([outcome.n_in for outcome in outcomes], dtype=np.int64).reshape(shape)
     n_spilled = np.array([outcome.n_spilled for outcome in outcomes], dtype=np.int64).reshape(shape)
     recordings = [outcome.recording for outcome in outcomes if outcome.recording is not None]

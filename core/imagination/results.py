@@ -152,6 +152,21 @@ class Containability(Drop):
 
 
 @dataclass(frozen=True)
+class PoursSoFar:
+    """News: the pours that are imagined so far.
+
+    Attributes:
+        theta_rad: (I,) their directions.
+        indent_m: (3,) their distances.
+        p: (I, 3) particle-in-object ratio P, mean over the packings that are done; NaN where none is.
+    """
+
+    theta_rad: FloatArray
+    indent_m: FloatArray
+    p: FloatArray
+
+
+@dataclass(frozen=True)
 class PourGrid:
     """Result of pouring imagination (Sec. III-B): I directions (8, or 1 with theta fixed) at 3 distances.
 

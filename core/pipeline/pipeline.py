@@ -24,6 +24,7 @@ from core.motion.pour.feasibility import PourMotions
 from core.parameters import Parameters, load_preset
 from core.pipeline.freshness import Freshness, freshness, is_fresh, motion_settings, source_of
 from core.pipeline.given_mesh import GivenMesh
+from core.pipeline.news import StageDone
 from core.pipeline.report_content import gather
 from core.pipeline.running import RUNS, Given, Tools, with_n_pour
 from core.pipeline.session_view import IMAGINED, SessionView
@@ -54,6 +55,9 @@ class _Keeping(Reporter):
     def warn(self, sentence: str) -> None:
         self._warnings.append(sentence)
         self._face.warn(sentence)
+
+    def tell(self, news: object) -> None:
+        self._face.tell(news)
 
     def raise_if_cancelled(self) -> None:
         self._face.raise_if_cancelled()
@@ -284,6 +288,7 @@ class Pipeline:
                 result.save(folder)
             self._keep_warnings(folder)
         self._known[name] = self._record(name).digest, result
+        self.reporter.tell(StageDone(self.session.path, name))
 
     def _loaded(self, name: str) -> Any:
         """Return the result that a stage's folder holds; what was just computed or read is not read again.

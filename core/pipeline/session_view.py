@@ -187,13 +187,20 @@ class SessionView:
             return Judgement.from_table(table, folder)
 
     @cached_property
-    def containability(self) -> Containability | None:
-        """The drop with its verdict."""
-        if "containability" not in self.records or self.judgement is None:
+    def drop(self) -> Drop | None:
+        """The drop, whether or not it is judged."""
+        if "containability" not in self.records:
             return None
         folder = self._path("containability")
         with reading(folder):
-            return self.judgement.of(Drop.load(folder))
+            return Drop.load(folder)
+
+    @cached_property
+    def containability(self) -> Containability | None:
+        """The drop with its verdict."""
+        if self.drop is None or self.judgement is None:
+            return None
+        return self.judgement.of(self.drop)
 
     @cached_property
     def grid(self) -> PourGrid | None:

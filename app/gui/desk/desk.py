@@ -21,6 +21,7 @@ from app.jobs.session_work import SessionWork
 from app.library.places import new_session_folder
 from app.library.session_folder import remember_parameters
 from core.errors import PoursightError
+from core.pipeline.news import StageDone
 
 if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
@@ -32,7 +33,8 @@ _CELL_KEY = "cell/file"
 class Desk(QObject):
     """The session, the jobs and the cell.
 
-    Signals: `page_wanted` with the key of a page to show; `message` with a sentence for the message bar.
+    Signals: `page_wanted` with the key of a page to show; `message` with a sentence for the message bar;
+    `new_session_wanted` and `report_wanted` when a page offers what the menus do.
 
     Attributes:
         workspace: the open session and its parameters.
@@ -47,6 +49,8 @@ class Desk(QObject):
 
     page_wanted = Signal(str)
     message = Signal(str)
+    new_session_wanted = Signal()
+    report_wanted = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -61,6 +65,7 @@ class Desk(QObject):
         self._hosts: tuple[Host[Any], ...] = (self.session_host, self.scan_host, self.arm_host)
         self.arm = ArmLink(self.arm_host, self.scan_host, self)
         self.jobs.event_received.connect(self.arm.handle)
+        self.jobs.event_received.connect(self._take_news)
         self.jobs.finished.connect(lambda *_: self.workspace.refresh())
         self.jobs.failed.connect(lambda *_: self.workspace.refresh())
         self.cell.failed.connect(self.message)
@@ -100,6 +105,11 @@ class Desk(QObject):
         for number, host in enumerate(self._hosts):
             # One after the other: each is busy importing for a second or two.
             QTimer.singleShot(_APART_MS * number, self, partial(self._open, host))
+
+    def _take_news(self, news: object) -> None:
+        """What a stage found is shown while the stages after it still run."""
+        if isinstance(news, StageDone) and news.session == self.workspace.folder:
+            self.workspace.refresh()
 
     def _remember_parameters(self) -> None:
         """Keep an edit even if nothing is run with it."""

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Any, TypeVar
 
 from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
+from app.gui.desk.job_steps import JobSteps
 from app.gui.remedies import remedy_words
 from app.gui.views.labels import with_view_numbers
 from app.jobs.host import Host
@@ -36,8 +37,11 @@ class RunningJob:
         host: the process that does it.
         patience_s: how long it may take to stop when cancelled.
         stage: that runs, by the pipeline's name.
-        fraction: of that stage, 0 to 1.
+        fraction: of the whole job if its steps are known, else of that stage, 0 to 1.
         is_cancelling: whether it was cancelled.
+        stage_began_s: when that stage began.
+        steps: of the job; none if they are not known.
+        counted: how many of how many units of that stage are done.
     """
 
     title: str
@@ -50,10 +54,17 @@ class RunningJob:
     fraction: float = 0.0
     is_cancelling: bool = False
     stage_began_s: float = field(default_factory=time.monotonic)
+    steps: JobSteps | None = None
+    counted: tuple[int, int] | None = None
 
     @property
     def seconds_left(self) -> float | None:
-        """Of the stage that runs, by its speed so far; none while too little is done to estimate it."""
+        """Of the whole job if its steps are known, else of the stage that runs, by its speed so far.
+
+        None while too little is done to estimate it.
+        """
+        if self.steps is not None:
+            return self.steps.seconds_left
         spent_s = time.monotonic() - self.stage_began_s
         if self.fraction <= 0.02 or spent_s < _SOONEST_GUESS_S:
             return None
@@ -63,7 +74,11 @@ class RunningJob:
         """Update stage and fraction."""
         if message.stage != self.stage:
             self.stage, self.stage_began_s = message.stage, time.monotonic()
+        self.counted = int(message.done), round(message.total)
         self.fraction = message.done / message.total if message.total else 0.0
+        if self.steps is not None:
+            self.steps.progress(message.stage, self.fraction)
+            self.fraction = self.steps.fraction
 
 
 class Jobs(QObject):
@@ -123,6 +138,7 @@ class Jobs(QObject):
         then: Callable[[Any], None] | None = None,
         patience_s: float = 1.0,
         done: str = "",
+        steps: Sequence[str] = (),
     ) -> None:
         """Start a job; nothing happens while another one runs (its buttons are disabled then).
 
@@ -135,15 +151,26 @@ class Jobs(QObject):
             then: called with the result, after `finished`.
             patience_s: how long a cancelled job may take to stop before its process is killed.
             done: what is said when it is done; else its title with "done".
+            steps: the stages it will run, if there are several.
         """
         if self.running is not None:
             return
         again = partial(
-            self.start, title, page, host, method, *arguments, then=then, patience_s=patience_s, done=done
+            self.start,
+            title,
+            page,
+            host,
+            method,
+            *arguments,
+            then=then,
+            patience_s=patience_s,
+            done=done,
+            steps=steps,
         )
         said = done or self.tr("{title}: done.").format(title=title)
         is_once_only = host in self._once_only
         self.running = RunningJob(title, page, said, None if is_once_only else again, host, patience_s)
+        self.running.steps = JobSteps(steps) if steps else None
         self._then = then
         self._tick.start()
         self.started.emit(self.running)

@@ -22,6 +22,7 @@ def stage_words(stage: str) -> str:
         "containability": translate("Stage", "Dropping candies"),
         "capacity": translate("Stage", "Filling it with candies"),
         "retention": translate("Stage", "Tilting it until candies fall out"),
+        "cup": translate("Stage", "Simulating the cup"),
         "pouring": translate("Stage", "Simulating pours"),
         "risk": translate("Stage", "Trying the best pours with disturbances"),
         "motion": translate("Stage", "Checking the arm's motions"),
@@ -33,3 +34,23 @@ def stage_words(stage: str) -> str:
         "outcome": translate("Stage", "Counting candies"),
     }
     return words.get(stage, stage.capitalize())
+
+
+def step_name(stage: str) -> str:
+    """Return a step's name among the others of a job: one word."""
+    translate = QCoreApplication.translate
+    names = {
+        "import": translate("Step", "Images"),
+        "reconstruction": translate("Step", "Surface"),
+        "quality": translate("Step", "Check"),
+        "colors": translate("Step", "Colours"),
+        "collision": translate("Step", "Body"),
+        "containability": translate("Step", "Drop"),
+        "capacity": translate("Step", "Fill"),
+        "retention": translate("Step", "Tilt"),
+        "pouring": translate("Step", "Pours"),
+        "risk": translate("Step", "Risk"),
+        "motion": translate("Step", "Arm"),
+        "evidence": translate("Step", "Pictures"),
+    }
+    return names.get(stage, stage.capitalize())

@@ -15,6 +15,13 @@ from core.pipeline.freshness import Freshness, finished_records, freshness
 from core.pipeline.session_view import SessionView
 from core.session import Session, StageRecord
 from core.session.pour_runs import PourRun, pour_runs
+from core.stages import GIVEN, MESH, STAGE_NAMES, stages_before
+
+_PROGRESS_OF = {"judgement": ("capacity", "retention"), "amount": ()}
+"""Stages whose progress goes by other names, or that take no time."""
+IMAGINING = ("risk", "quality", "colors")
+"""What imagining brings up to date, with all before it."""
+_OF_A_SCAN = ("reconstruction", "quality", "colors")
 
 
 class Workspace(QObject):
@@ -109,6 +116,17 @@ class Workspace(QObject):
             self.view = SessionView(self.session, records)
             self.runs = tuple(pour_runs(self.session.path))
         self.stages_changed.emit()
+
+    def steps_to(self, *ends: str) -> tuple[str, ...]:
+        """Return the stale steps up to some stages, in order, as their progress is called."""
+        source = MESH if self.has(MESH) else "reconstruction"
+        wanted = {name for end in ends for name in stages_before(end, source)}
+        if source == MESH:
+            wanted -= set(_OF_A_SCAN)
+        names = [name for name in STAGE_NAMES if name in wanted and name not in GIVEN]
+        return tuple(
+            step for name in names if not self.is_fresh(name) for step in _PROGRESS_OF.get(name, (name,))
+        )
 
     def is_fresh(self, stage: str) -> bool:
         """Whether a stage is what the parameters would give."""

@@ -11,7 +11,6 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
-    QResizeEvent,
     QShortcut,
     QWindow,
 )
@@ -21,7 +20,6 @@ from PySide6.QtWidgets import (
     QButtonGroup,
     QFrame,
     QHBoxLayout,
-    QLabel,
     QPushButton,
     QSizePolicy,
     QVBoxLayout,
@@ -32,6 +30,7 @@ from typing_extensions import override
 from app.gui.desk.desk import Desk
 from app.gui.desk.page_states import PageState
 from app.gui.pages.registry import TabFacts
+from app.gui.shell.session_button import SessionButton
 from app.gui.stop.panel import STOP_KEYS
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.state_mark import State, paint_mark, state_word
@@ -53,39 +52,21 @@ class TopBar(QFrame):
         self._desk = desk
         self._seen_status: ArmStatus | None = None
         self._is_moving = False
-        self._session = QLabel()
-        self._session.setObjectName("session_name")
-        self._session.setProperty("role", "title")
+        self.session = SessionButton(desk)
         self._cell, self._robot, self._camera = Chip("cell_chip"), Chip("robot_chip"), Chip("camera_chip")
         self.stop = StopButton(window)
         row = QHBoxLayout(self)
         row.setContentsMargins(2 * GRID_PX, GRID_PX // 2, GRID_PX, GRID_PX // 2)
         row.setSpacing(2 * GRID_PX)
-        row.addWidget(self._session, 1)
+        row.addWidget(self.session)
+        row.addStretch(1)
         for chip in (self._cell, self._robot, self._camera):
             row.addWidget(chip)
         row.addWidget(self.stop)
-        desk.workspace.session_changed.connect(self._show_session)
-        desk.workspace.renamed.connect(self._show_session)
         jobs = desk.jobs
         for signal in (desk.cell.changed, desk.arm.changed, jobs.started, jobs.finished, jobs.failed):
             signal.connect(lambda *_: self._show_devices())
-        self._show_session()
         self._show_devices()
-
-    @override
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._show_session()
-
-    def _show_session(self) -> None:
-        session = self._desk.workspace.session
-        text = self.tr("No session") if session is None else session.name
-        self._session.setToolTip("" if session is None else str(session.path))
-        width = max(self._session.width(), 200)
-        self._session.setText(
-            self._session.fontMetrics().elidedText(text, Qt.TextElideMode.ElideMiddle, width)
-        )
 
     def _show_devices(self) -> None:
         self._show_cell()

@@ -17,9 +17,10 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
+from app.gui.desk.job_steps import JobSteps
 from app.gui.desk.jobs import Jobs, RunningJob
 from app.gui.desk.page_states import PageState
-from app.gui.desk.stage_words import stage_words
+from app.gui.desk.stage_words import stage_words, step_name
 from app.gui.pages.registry import WORK
 from app.gui.theme import GRID_PX
 from app.gui.views.progress_line import ProgressLine
@@ -29,6 +30,10 @@ from core.report.sentences import duration_text
 
 _BAR_PX, _LOG_PX, _DETAILS_PX = 44, 150, 160
 _MOST_LINES = 2000
+_COUNTED = ("pouring",)
+"""Steps whose units people count."""
+_STEPS_BEFORE = 3
+"""So many steps that are done are still shown; with all of them the line would be too long."""
 
 
 class JobBar(QFrame):
@@ -97,10 +102,7 @@ class JobBar(QFrame):
             self.next_wanted.emit(self._step.page)
 
     def _show(self, job: RunningJob) -> None:
-        doing = stage_words(job.stage) if job.stage else self.tr("starting")
-        if job.is_cancelling:
-            doing = self.tr("stopping")
-        self._text.setText(f"{job.title}: {doing}")
+        self._text.setText(f"{job.title}: {self._doing(job)}")
         self._bar.show()
         self._bar.set_fraction(job.fraction if job.stage else None)
         self._left.setText(self._time_left(job))
@@ -108,10 +110,22 @@ class JobBar(QFrame):
         self._cancel.setVisible(True)
         self._cancel.setEnabled(not job.is_cancelling)
 
+    def _doing(self, job: RunningJob) -> str:
+        if job.is_cancelling:
+            return self.tr("stopping")
+        if not job.stage:
+            return self.tr("starting")
+        if job.steps is None or job.steps.current is None:
+            return stage_words(job.stage)
+        return steps_text(job.steps, job.stage, job.counted)
+
     def _time_left(self, job: RunningJob) -> str:
         share = self.tr("{percent} %").format(percent=round(100 * job.fraction)) if job.stage else ""
-        if job.seconds_left is None or job.is_cancelling:
+        if job.is_cancelling:
             return share
+        if job.seconds_left is None:
+            is_late = job.steps is not None and job.steps.is_late
+            return self.tr("{share}, takes longer than expected").format(share=share) if is_late else share
         return self.tr("{share}, about {time} left").format(share=share, time=duration_text(job.seconds_left))
 
     def _end(self, job: RunningJob, failed: Failed) -> None:
@@ -125,6 +139,25 @@ class JobBar(QFrame):
         self._left.clear()
         self._bar.hide()
         self._cancel.hide()
+
+
+def steps_text(steps: JobSteps, stage: str, counted: tuple[int, int] | None) -> str:
+    """Return the job's steps as rich text: the one that runs is bold, and counts; those before are ticked."""
+    current = steps.names.index(steps.current) if steps.current is not None else -1
+    words = []
+    for index, name in enumerate(
+        steps.names[max(current - _STEPS_BEFORE, 0) :], max(current - _STEPS_BEFORE, 0)
+    ):
+        text = step_name(name)
+        if index < current:
+            text = f"{text}\N{NO-BREAK SPACE}\N{CHECK MARK}"
+        elif index == current:
+            if name in _COUNTED and stage == name and counted is not None:
+                done = QCoreApplication.translate("JobBar", "{done} of {all}")
+                text = f"{text} {done.format(done=counted[0], all=counted[1])}"
+            text = f"<b>{text}</b>"
+        words.append(text)
+    return " \N{MIDDLE DOT} ".join(words)
 
 
 @dataclass(frozen=True)

@@ -47,6 +47,10 @@ class Menus(QMenuBar):
         self._add_help_menu()
         window.welcome.new_wanted.connect(self.new_session)
         window.welcome.open_wanted.connect(self.open_session)
+        window.top_bar.session.new_wanted.connect(self.new_session)
+        self._desk.new_session_wanted.connect(self.new_session)
+        self._desk.report_wanted.connect(self._write_report)
+        window.top_bar.session.open_wanted.connect(self.open_session)
         self._desk.workspace.session_changed.connect(self._enable)
         self._enable()
 
@@ -131,7 +135,7 @@ class Menus(QMenuBar):
         if self._desk.workspace.session is not None:
             self._desk.jobs.start(
                 self.tr("Report"), "history", self._desk.session_host, SessionWork.report,
-                self._desk.workspace.task(), then=_open_file,
+                self._desk.workspace.task(), then=_open_file, steps=self._desk.workspace.steps_to("evidence"),
             )  # fmt: skip
 
     def _use_theme(self, name: str) -> None:

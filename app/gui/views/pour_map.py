@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import degrees, radians
+from math import degrees, isnan, radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,7 @@ class MappedPour:
         j: index of the distance.
         theta_rad: direction from the pour centre to the pivot, from the base's x-axis.
         indent_m: L_idt, distance of the pivot from the pour centre.
-        p: particle-in-object ratio P, 0..1, mean over the packings.
+        p: particle-in-object ratio P, 0..1, mean over the packings; NaN while it is not known.
         spread: standard deviation of P over the packings; None with one packing.
         is_feasible: whether the arm can make it; None when that was not checked yet.
         reason: why it is not feasible, or what is worth knowing of it.
@@ -184,6 +184,8 @@ class PourMap(QWidget):
         return "\n".join(lines)
 
     def _describe_p(self, cell: MappedPour) -> str:
+        if isnan(cell.p):
+            return self.tr("not imagined yet")
         if cell.spread is None:
             return self.tr("P {percent:.0f} % (one packing)").format(percent=100 * cell.p)
         return self.tr("P {percent:.0f} ± {spread:.0f} % over the packings").format(
@@ -280,6 +282,8 @@ class PourMap(QWidget):
         if not self._cells:
             painter.paint_empty(self.tr("The pours appear here\nonce they have been imagined"))
         for key, cell in self._cells.items():
+            if isnan(cell.p):
+                continue
             small = self._small_text(cell)
             away_px = 3.0 if key == self._chosen and small else 0.0
             painter.paint_cell(

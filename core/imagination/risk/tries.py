@@ -20,6 +20,7 @@ from core.imagination.results import PourChoice, PourGrid
 from core.imagination.risk.drawing import draw_cups
 from core.imagination.risk.race import Race
 from core.imagination.risk.result import RISK_FILE, FewerCandies, PourRisk, lower_bound
+from core.progress import Reporter
 
 STAGE = "risk"
 CHOICE_FILE = "choice.json"
@@ -128,6 +129,24 @@ def _try_fewer(
     return None
 
 
+class _RoundReporter(Reporter):
+    """Reports a round's progress as that of the whole race, so that it never goes back."""
+
+    def __init__(self, face: Reporter, n_before: int, n_round: int, n_most: int) -> None:
+        super().__init__()
+        self._face = face
+        self._n_before, self._n_round, self._n_most = n_before, n_round, n_most
+
+    def progress(self, stage: str, done: float, total: float) -> None:
+        self._face.progress(stage, self._n_before + self._n_round * done / total, self._n_most)
+
+    def warn(self, sentence: str) -> None:
+        self._face.warn(sentence)
+
+    def raise_if_cancelled(self) -> None:
+        self._face.raise_if_cancelled()
+
+
 def run_race(
     context: ImaginationContext, target: ObjectAtRest, grid: PourGrid, runs: CupRuns, race: Race
 ) -> PourRisk:
@@ -152,6 +171,9 @@ def run_race(
             )
             for drawn in cups
         ]
-        outcomes: list[PourOutcome] = context.run(tasks, STAGE)
+        inside = replace(
+            context, reporter=_RoundReporter(context.reporter, race.n_spent, len(tries), race.n_most)
+        )
+        outcomes: list[PourOutcome] = inside.run(tasks, STAGE)
         race.record((i, j), [outcome.n_spilled for outcome in outcomes])
     return race.risk

@@ -28,9 +28,9 @@ class CountingRunner(RunHere):
     def __init__(self):
         self.n_tasks = 0
 
-    def run(self, tasks, stage, reporter):
+    def run(self, tasks, *others):
         self.n_tasks += len(tasks)
-        return super().run(tasks, stage, reporter)
+        return super().run(tasks, *others)
 
 
 def arrays_of(run):

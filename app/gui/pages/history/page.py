@@ -20,12 +20,12 @@ from app.gui.pages.history.session_side import (
     SessionPart,
     TrashBox,
     ask_archive,
-    ask_name,
     ask_target,
     documents_folder,
 )
 from app.gui.pages.page import Page, SidePanel, SplitView
 from app.gui.views.labels import say, text_label
+from app.gui.views.name_dialog import ask_name
 from app.jobs.library_work import LibraryWork
 from app.library.compare import Comparison, compare
 from app.library.index import send_to_trash

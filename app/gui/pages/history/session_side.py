@@ -13,7 +13,6 @@ from PySide6.QtWidgets import (
     QFileDialog,
     QFormLayout,
     QHBoxLayout,
-    QInputDialog,
     QLabel,
     QPushButton,
     QSizePolicy,
@@ -94,18 +93,6 @@ def ask_archive(parent: QWidget, folder: Path, then: Callable[[Path], None]) -> 
 
 def _open(dialog: QFileDialog, then: Callable[[Path], None]) -> None:
     dialog.fileSelected.connect(lambda file: then(Path(file)))
-    dialog.finished.connect(dialog.deleteLater)
-    dialog.open()
-
-
-def ask_name(parent: QWidget, name: str, then: Callable[[str], None]) -> None:
-    """Ask what a session is to be called; nothing happens if the dialog is cancelled."""
-    dialog = QInputDialog(parent)
-    dialog.setObjectName("rename_dialog")
-    dialog.setWindowTitle(QCoreApplication.translate("History", "Rename the session"))
-    dialog.setLabelText(QCoreApplication.translate("History", "Name"))
-    dialog.setTextValue(name)
-    dialog.textValueSelected.connect(then)
     dialog.finished.connect(dialog.deleteLater)
     dialog.open()
 

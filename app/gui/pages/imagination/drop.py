@@ -12,13 +12,13 @@ from app.gui.pages.photographed import in_colors
 from app.gui.views.scene import PreparedMesh, prepare_mesh
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.shapes import Shape
-from core.geometry import FloatArray
+from core.geometry import FloatArray, make_pose, rotation_y, rotation_z
 from core.imagination.capacity.result import Capacity
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Float32Array, Recording
 from core.imagination.rendering.replay import make_replay, standing
 from core.imagination.rendering.shapes import candy_mesh
-from core.imagination.results import Containability
+from core.imagination.results import Containability, Drop
 from core.imagination.retention.result import Retention
 from core.mesh import TriangleMesh
 from core.parameters.bodies import ParticleParameters
@@ -103,6 +103,24 @@ class DropKey:
     containability: str
     judgement: str
     collision: str
+    pouring: str
+
+
+@dataclass(frozen=True, eq=False)
+class ShownBody:
+    """The object before anything was dropped on it.
+
+    Attributes:
+        body: the surface that the physics knows.
+        casters_m: (n, 3) points all over it, for its shadow.
+        center_m: (3,) below its middle, on the ground.
+        ground_radius_m: half the ground's side.
+    """
+
+    body: PreparedMesh
+    casters_m: FloatArray
+    center_m: FloatArray
+    ground_radius_m: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +128,9 @@ class ShownDrop:
     """A drop, ready to be replayed.
 
     Attributes:
-        containability: the result.
+        digest: of the drop.
+        drop: what became of the candies.
+        containability: the verdict; none as long as it is not known what the object holds.
         capacity: how much the object holds; none if it was not imagined.
         retention: how far the object may be tilted; none if it was not imagined.
         settings: it was imagined with.
@@ -129,7 +149,9 @@ class ShownDrop:
         indents_m: distances of the pivots from the footprint's centre; empty without pours.
     """
 
-    containability: Containability
+    digest: str
+    drop: Drop
+    containability: Containability | None
     capacity: Capacity | None
     retention: Retention | None
     settings: ContainabilityParameters
@@ -150,34 +172,39 @@ class ShownDrop:
 
 def key_of(view: SessionView) -> DropKey:
     """Look up the stages' digests."""
-    records = [view.finished.get(stage) for stage in ("containability", "judgement", "collision")]
+    records = [view.finished.get(stage) for stage in ("containability", "judgement", "collision", "pouring")]
     digests = ["" if record is None else record.digest for record in records]
     return DropKey(view.session.path, *digests)
 
 
-def load(key: DropKey) -> ShownDrop | None:
-    """Read a session's drop; none if nothing was imagined.
+def load(key: DropKey) -> ShownDrop | ShownBody | None:
+    """Read a session's drop, or its object alone if nothing was dropped; none if there is no object.
 
     Raises:
         SessionError: a file is damaged, or of another version.
     """
     from core.collision import CollisionModel
 
-    view = SessionView.of(key.folder)
-    containability, judgement = view.containability, view.judgement
-    if containability is None or judgement is None or not key.collision:
+    if not key.collision:
         return None
-    parameters = view.parameters_of("containability")
+    view = SessionView.of(key.folder)
+    surface = CollisionModel.load(view.session.folder("collision")).surface
+    body = in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view)
+    casters_m = surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS)
+    drop = view.drop
+    if drop is None:
+        return _standing_alone(surface, body, casters_m)
+    parameters, judgement = view.parameters_of("containability"), view.judgement
     settings, particle = parameters.containability, parameters.particle
-    session, capacity, retention = view.session, judgement.capacity, judgement.retention
-    surface = CollisionModel.load(session.folder("collision")).surface
-    recording, ground_m = standing(containability.recording, surface)
+    recording, ground_m = standing(drop.recording, surface)
     candy = candy_mesh(particle)
-    replay = make_replay(recording, containability.retained, ground_m, particle_extents_m(particle))
+    replay = make_replay(recording, drop.retained, ground_m, particle_extents_m(particle))
     return ShownDrop(
-        containability=containability,
-        capacity=capacity,
-        retention=retention,
+        digest=key.containability,
+        drop=drop,
+        containability=None if judgement is None else judgement.of(drop),
+        capacity=None if judgement is None else judgement.capacity,
+        retention=None if judgement is None else judgement.retention,
         settings=settings,
         particle=particle,
         seed=parameters.seed,
@@ -185,10 +212,10 @@ def load(key: DropKey) -> ShownDrop | None:
             view.records[name].seconds for name in ("containability", "judgement") if name in view.records
         ),
         moments=Moments(replay.recording),
-        phases=phases_of(containability, settings),
-        n_on_top=_n_on_top(containability),
-        body=in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view),
-        casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
+        phases=phases_of(drop, settings),
+        n_on_top=_n_on_top(drop),
+        body=body,
+        casters_m=casters_m,
         candy=(candy.vertices_m, candy.faces),
         ground_m=ground_m,
         ground_radius_m=_ground_radius_m(surface, replay.recording.positions_m[-1]),
@@ -197,11 +224,17 @@ def load(key: DropKey) -> ShownDrop | None:
     )
 
 
-def _n_on_top(containability: Containability) -> int:
+def _standing_alone(surface: TriangleMesh, body: PreparedMesh, casters_m: FloatArray) -> ShownBody:
+    middle_m = (surface.aabb_min_m + surface.aabb_max_m) / 2
+    center_m = np.array([*middle_m[:2], surface.aabb_min_m[2]])
+    return ShownBody(body, casters_m, center_m, _ground_radius_m(surface, np.empty((0, 3), np.float32)))
+
+
+def _n_on_top(drop: Drop) -> int:
     """Fallen candies are no longer recorded, or are still falling."""
-    heights_m = containability.recording.positions_m[-1, ~containability.retained, 2]
+    heights_m = drop.recording.positions_m[-1, ~drop.retained, 2]
     with np.errstate(invalid="ignore"):
-        return int((heights_m >= containability.aabb_m[1, 2]).sum())
+        return int((heights_m >= drop.aabb_m[1, 2]).sum())
 
 
 def _ground_radius_m(surface: TriangleMesh, ends_m: Float32Array) -> float:
@@ -222,7 +255,7 @@ def _outline_m(surface: TriangleMesh) -> FloatArray:
     return outline
 
 
-def phases_of(containability: Containability, settings: ContainabilityParameters) -> tuple[Phase, ...]:
+def phases_of(drop: Drop, settings: ContainabilityParameters) -> tuple[Phase, ...]:
     """Return the phases (Sec. III-A, Fig. 3a) that take time, in their order."""
     lengths: dict[PhaseKey, float] = {
         "drop": settings.drop_s,
@@ -233,7 +266,7 @@ def phases_of(containability: Containability, settings: ContainabilityParameters
     phases, begin_s = [], 0.0
     for key, length_s in lengths.items():
         if length_s > 0:
-            n_inside = _n_inside(containability, begin_s + length_s)
+            n_inside = _n_inside(drop, begin_s + length_s)
             phases.append(Phase(key, begin_s, begin_s + length_s, n_inside))
             begin_s += length_s
     return tuple(phases)
@@ -245,9 +278,26 @@ def push_of(settings: ContainabilityParameters, since_s: float) -> str:
     return ("+x", "-x", "+y", "-y")[index]
 
 
-def _n_inside(containability: Containability, time_s: float) -> int:
-    recording = containability.recording
+def _n_inside(drop: Drop, time_s: float) -> int:
+    recording = drop.recording
     positions_m = recording.positions_m[int(np.abs(recording.time_s - time_s).argmin())]
-    low_m, high_m = containability.aabb_m
+    low_m, high_m = drop.aabb_m
     with np.errstate(invalid="ignore"):  # NaN: fallen and gone
         return int(((positions_m > low_m) & (positions_m < high_m)).all(axis=1).sum())
+
+
+def tilted_pose(points_m: FloatArray, ground_m: float, tilt_rad: float, toward_rad: float) -> FloatArray:
+    """Return the pose (4, 4) of an object that is tilted towards a side and stands on the ground again.
+
+    Args:
+        points_m: (n, 3) of its surface as it was scanned.
+        ground_m: height of the ground.
+        tilt_rad: how far.
+        toward_rad: the side that sinks, against the x-axis.
+    """
+    rotation = rotation_z(toward_rad) @ rotation_y(tilt_rad) @ rotation_z(-toward_rad)
+    middle_m = (points_m.min(axis=0) + points_m.max(axis=0)) / 2
+    translation_m = middle_m - rotation @ middle_m
+    lowest_m = float((points_m @ rotation.T + translation_m)[:, 2].min())
+    translation_m[2] += ground_m - lowest_m
+    return make_pose(rotation, translation_m)

@@ -10,7 +10,7 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 from typing_extensions import override
 
-from app.gui.pages.imagination.drop import PhaseKey, ShownDrop, push_of
+from app.gui.pages.imagination.drop import PhaseKey, ShownBody, ShownDrop, push_of, tilted_pose
 from app.gui.pages.layouts import lay_around
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.film_strip import FilmStrip, Picture
@@ -67,27 +67,65 @@ class DropReplay(QWidget):
         bottom.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, GRID_PX)
         bottom.addWidget(self.timeline)
         lay_around(self, top, self.scene, bottom)
-        self.show_drop(None)
+        self.show_nothing()
 
-    def show_drop(self, drop: ShownDrop | None) -> None:
-        """Show another drop at its end, where the verdict is seen; none: nothing."""
-        is_first = self._drop is None
-        self._drop = drop
-        self._see_through.setVisible(drop is not None)
-        if drop is None:
-            self.scene.clear()
-            self.timeline.set_sections(0.0)
-        else:
-            self._fill(drop)
-            sections = [Section(phase_title(phase.key), phase.begin_s, phase.end_s) for phase in drop.phases]
-            self.timeline.set_sections(drop.moments.duration_s, sections)
-            self.timeline.set_time(drop.moments.duration_s)
-            if is_first:
-                self.scene.fit("object", "candies", "start")
+    def show_nothing(self) -> None:
+        """Show an empty view."""
+        self._forget()
+        self.scene.clear()
         self._show_legend()
 
+    def show_body(self, shown: ShownBody) -> None:
+        """Show an object on which nothing was dropped yet."""
+        self._forget()
+        self.scene.clear()
+        self.scene.set_prepared_mesh("object", shown.body)
+        radius_m = shown.ground_radius_m
+        self.scene.set_ground("ground", shown.center_m, [radius_m] * 2, shown.casters_m)
+        self.scene.fit("object")
+        self._show_legend()
+
+    def show_drop(self, drop: ShownDrop, *, is_played: bool = False) -> None:
+        """Show another drop: played from its beginning, or at its end, where the verdict is seen."""
+        is_first, self._drop = self._drop is None, drop
+        self._see_through.show()
+        self._fill(drop)
+        sections = [Section(phase_title(phase.key), phase.begin_s, phase.end_s) for phase in drop.phases]
+        self.timeline.set_sections(drop.moments.duration_s, sections)
+        if is_first:
+            self.scene.fit("object", "candies", "start")
+        self.timeline.set_time(0.0 if is_played else drop.moments.duration_s)
+        if is_played:
+            self.timeline.play()
+        self._show_legend()
+
+    def _forget(self) -> None:
+        self._drop = None
+        self._see_through.hide()
+        self.timeline.set_sections(0.0)
+
+    def show_tilt(self, tilt_rad: float, toward_rad: float, words: str) -> None:
+        """Tilt the object until the time line is used again; where candies are then was not recorded.
+
+        Args:
+            tilt_rad: how far.
+            toward_rad: the side that sinks, against the x-axis.
+            words: what is said of it.
+        """
+        drop = self._drop
+        if drop is not None:
+            self.timeline.pause()
+            n = drop.drop.n_drop
+            self.scene.set_candy_poses("candies", np.full((n, 3), np.nan), np.full((n, 4), np.nan))
+            self.scene.set_pose("object", tilted_pose(drop.casters_m, drop.ground_m, tilt_rad, toward_rad))
+            self._now.setText(words)
+
+    def put_back(self) -> None:
+        """Show the drop at the time of the time line, if the object was tilted."""
+        self._show_time(self.timeline.time_s)
+
     def _fill(self, drop: ShownDrop) -> None:
-        found = drop.containability
+        found = drop.drop
         self._show_body()
         middle = found.aabb_m.mean(axis=0)
         self.scene.set_ground(
@@ -129,7 +167,7 @@ class DropReplay(QWidget):
         if self._drop is None:
             self._legend.clear()
             return
-        found = self._drop.containability
+        found = self._drop.drop
         kept = self.tr("{n} kept").format(n=found.n_in)
         lost = self.tr("{n} lost").format(n=found.n_drop - found.n_in)
         self._legend.setTextFormat(Qt.TextFormat.RichText)

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
+from app.gui.desk.workspace import IMAGINING
 from app.gui.pages.background_page import BackgroundPage
 from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.page import SidePanel, SplitView
@@ -113,9 +114,16 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
     @override
     def content_key(self) -> PoursKey | None:
         folder = self.desk.workspace.folder
-        if folder is None or not self.desk.workspace.has("pouring"):
+        if folder is None or not self.desk.workspace.has("pouring") or self._is_half_done:
             return None
         return PoursKey(folder, self.desk.cell.settings, self.content)
+
+    @property
+    def _is_half_done(self) -> bool:
+        """Whether pours are just being imagined of which none is chosen yet."""
+        view, job = self.desk.workspace.view, self.desk.jobs.running
+        is_imagining = job is not None and job.host is self.desk.session_host
+        return is_imagining and view is not None and "risk" not in view.records
 
     @override
     def show_content(self, former: ShownPours | None) -> None:
@@ -201,8 +209,9 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
         go()
 
     def _imagine(self) -> None:
-        host, task = self.desk.session_host, self.desk.workspace.task()
-        self.desk.jobs.start(self.tr("Imagine"), self.KEY, host, SessionWork.imagine, task)
+        host, workspace = self.desk.session_host, self.desk.workspace
+        steps, task = workspace.steps_to(*IMAGINING), workspace.task()
+        self.desk.jobs.start(self.tr("Imagine"), self.KEY, host, SessionWork.imagine, task, steps=steps)
 
     def _ask_for(self, parameters: Parameters) -> None:
         self.desk.workspace.edit(parameters, self.tr("amount"))

@@ -81,6 +81,7 @@ class ReconstructionPage(BackgroundPage[ModelKey, Loaded]):
             desk.session_host,
             SessionWork.reconstruct,
             desk.workspace.task(),
+            steps=desk.workspace.steps_to("collision", "quality", "colors"),
         )
 
     def _compare(self) -> None:

@@ -23,16 +23,21 @@ _MINUS, _EN_DASH = "\N{MINUS SIGN}", "\N{EN DASH}"
 
 
 class OutcomePanel(Panel):
-    """A number with a big minus and a big plus, to be used in gloves.
+    """A number with a big minus and a big plus, to be used in gloves; above it what is known of the pour.
 
     Attributes:
         edited: something was entered.
+        report_wanted: somebody wants to read the report.
+        object_wanted: somebody wants to go on with another object.
     """
 
     edited = Signal()
+    report_wanted = Signal()
+    object_wanted = Signal()
 
     def __init__(self) -> None:
         super().__init__("outcome_panel", self.tr("What became of the candies?"))
+        self._name = self.tr("object")
         self._n_candies = 0
         self._spilled: int | None = None
         self._before: Outcome | None = None
@@ -66,6 +71,22 @@ class OutcomePanel(Panel):
         self.column.addWidget(self._not_counted)
         self.column.addWidget(self._remarks)
         self.column.addWidget(self._failure)
+        links = QHBoxLayout()
+        links.setSpacing(GRID_PX)
+        for name, text, signal in (
+            ("outcome_report", self.tr("Report"), self.report_wanted),
+            ("outcome_new", self.tr("New object…"), self.object_wanted),
+        ):
+            button = QPushButton(text)
+            button.setObjectName(name)
+            button.clicked.connect(signal)
+            links.addWidget(button)
+        links.addStretch(1)
+        self.column.addLayout(links)
+
+    def call_object(self, name: str) -> None:
+        """Call the object by its session's name, if that is one plain word."""
+        self._name = name.lower() if name.isalpha() else self.tr("object")
 
     @property
     def is_complete(self) -> bool:
@@ -102,6 +123,15 @@ class OutcomePanel(Panel):
         say(self._failure, failure)
         self._show_number()
 
+    def _headline(self) -> str:
+        """How many are in the object, once that is known; those left in the cup are not."""
+        if self._spilled is None or self._not_counted.isChecked() or not self._n_candies:
+            return self.tr("What became of the candies?")
+        before = self._before
+        n_in_cup = before.facts.get("n_in_cup", 0) if before is not None and before.is_simulated else 0
+        n_in = self._n_candies - self._spilled - n_in_cup
+        return self.tr("{n} of {all} in the {name}").format(n=n_in, all=self._n_candies, name=self._name)
+
     def _origin_text(self, before: Outcome | None) -> str:
         if before is None:
             said = self.tr("Count the candies beside the object. None spilled? Press {minus} once.")
@@ -123,6 +153,7 @@ class OutcomePanel(Panel):
         self._more.setEnabled(is_counted and (self._spilled is None or self._spilled != self._n_candies))
         shown = _EN_DASH if self._spilled is None or not is_counted else str(self._spilled)
         self._number.setText(shown)
+        self.heading.setText(self._headline())
         self._number.setAccessibleName(self.tr("Spilled candies: {n}").format(n=shown))
         self.edited.emit()
 

@@ -37,6 +37,7 @@ class ShownMotion:
         T_flange_cup: (4, 4) the cup in the hand.
         mouth_m: (N, 3) the path of the cup's mouth.
         pivot_m: (3,) r_pivot; none on a return.
+        pours_s: when the cup begins to rotate about its rim, and when it has; both the end on a return.
     """
 
     def __init__(self, planned: PlannedPour | PlannedBackOff) -> None:
@@ -47,6 +48,10 @@ class ShownMotion:
         self.T_flange_cup = planned.T_flange_cup
         self.mouth_m = planned.mouth_m
         self.pivot_m = planned.pivot_m if isinstance(planned, PlannedPour) else None
+        self.pours_s = self.duration_s, self.duration_s
+        for move, begin_s, lasts_s in zip(self.moves, self.begins_s, durations_s, strict=True):
+            if move.name is Segment.POUR:
+                self.pours_s = begin_s, begin_s + lasts_s
 
     def at(self, time_s: float) -> Moment:
         """Where everything is at a time; the ends before and after."""

@@ -14,6 +14,7 @@ from typing_extensions import override
 from app.gui.desk.desk import Desk
 from app.gui.pages.background_page import BackgroundPage
 from app.gui.pages.page import SplitView
+from app.gui.pages.robot.candies import load_imagined_or_true
 from app.gui.pages.robot.loading import SessionPours, load_cell, load_object, load_session_pours
 from app.gui.pages.robot.procedure import PourProcedure
 from app.gui.pages.robot.side import RobotSide
@@ -77,6 +78,8 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         side.hold_to_back_off.confirmed.connect(procedure.back_off)
         side.check.ticked.connect(self.update_actions)
         side.outcome.edited.connect(self.update_actions)
+        side.outcome.report_wanted.connect(self.desk.report_wanted)
+        side.outcome.object_wanted.connect(self.desk.new_session_wanted)
         side.recovery.by_hand.connect(procedure.connect_arm)
         side.state.disconnect_requested.connect(procedure.disconnect_arm)
         side.state.gripper_requested.connect(procedure.move_gripper)
@@ -128,6 +131,9 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
     @override
     def press_primary(self) -> None:
         """Connect and plan, as soon as it is known whether there is something to pour."""
+        if self.procedure.step is Step.OUTCOME and self.side.outcome.is_complete and self.desk.jobs.is_idle:
+            self._do_again()
+            return
         self._is_to_prepare = self.content is None
         if not self._is_to_prepare:
             self.procedure.prepare()
@@ -218,9 +224,24 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         self._fill(step)
         side.runs.select(procedure.run)
         self.view.show_motion(procedure.motion)
+        self._load_candies()
         if not step.is_moving:
             self.view.follow(None)
         self.update_actions()
+
+    def _load_candies(self) -> None:
+        """Those of the planned pour as imagined; else of the run that is asked for, as they were counted."""
+        procedure, folder = self.procedure, self.folder
+        planned, run = procedure.planned, procedure.run
+        record = self.desk.workspace.record("pouring")
+        is_counted = run is not None and procedure.activity is not Activity.COUNTING
+        if folder is None or not (planned or is_counted):
+            self.load("candies", None, load_imagined_or_true, self.view.show_candies)
+            self.view.show_candies(None)
+            return
+        plan = None if planned is None else (planned.plan.i, planned.plan.j)
+        key = folder, plan, run if planned is None else None, None if record is None else record.digest
+        self.load("candies", key, load_imagined_or_true, self.view.show_candies)
 
     def _fill(self, step: Step) -> None:
         procedure, side, cell = self.procedure, self.side, self.desk.cell
@@ -312,6 +333,7 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         run = next((one for one in runs if one.folder == folder), None)
         if self._asked != (folder, run):
             self._asked = folder, run
+            outcome.call_object(self.desk.workspace.session_name)
             known = None if run is None or run.outcome is None else run.outcome.n_candies
             outcome.show_run(run, known or procedure.cup.n_candies, procedure.failure)
 

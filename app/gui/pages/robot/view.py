@@ -16,8 +16,10 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.pages.layouts import lay_around
+from app.gui.pages.robot.candies import PouredCandies
+from app.gui.pages.robot.candy_layer import CandyLayer
 from app.gui.pages.robot.loading import RobotCell
-from app.gui.pages.robot.motion import ShownMotion, move_text
+from app.gui.pages.robot.motion import Moment, ShownMotion, move_text
 from app.gui.theme import GRID_PX
 from app.gui.views.scene import PreparedMesh, Scene3D
 from app.gui.views.scene.arm import ArmLooks
@@ -28,7 +30,10 @@ from core.motion.kinematics import flange_pose
 AHEAD_S = 1.0
 """So far the ghost is ahead of the moving arm, in seconds of the plan."""
 _CUP_OPACITY, _GHOST_CUP_OPACITY = 0.55, 0.3
-_GHOST_ARM, _COLLISION = "planned arm", "collision shape"
+_GHOST_ARM, _GHOST_CUP, _COLLISION = "planned arm", "planned cup", "collision shape"
+_BEFORE_S, _AFTER_S = 1.5, 2.0
+"""So long before and after the pour rotation the view is close to the object."""
+_SEE_THROUGH = 0.45
 _MOST_OFTEN_S = 0.09
 _SAME_RAD = 5e-4
 _APART_RAD = 0.01
@@ -55,7 +60,9 @@ class ArmView(QWidget):
         self._drawn: tuple[FloatArray, bool | None] | None = None
         self._drawn_s = 0.0
         self._is_following = False
+        self._is_near = False
         self.scene = Scene3D()
+        self._candies = CandyLayer(self.scene)
         self.scene.setObjectName("robot_scene")
         self.scene.set_empty_text(self.tr("The arm is shown here."))
         self.timeline = Timeline()
@@ -102,7 +109,7 @@ class ArmView(QWidget):
         scene.set_label("station", cell.station_m, self.tr("cup station"))
         scene.set_points("corners", cell.corners_m, color="scene", size_px=1)  # unseen; kept in view
         scene.set_prepared_mesh("cup", cell.cup, color="kept", opacity=_CUP_OPACITY)
-        scene.set_prepared_mesh("planned cup", cell.cup, color="ghost", opacity=_GHOST_CUP_OPACITY)
+        scene.set_prepared_mesh(_GHOST_CUP, cell.cup, color="ghost", opacity=_GHOST_CUP_OPACITY)
         model = cell.model
         scene.set_arm(_GHOST_ARM, model.arm, model.home_rad, tools=model.tools, looks="ghost")
         self._set_arm(is_connected=self._joints_rad is not None)
@@ -163,8 +170,33 @@ class ArmView(QWidget):
             ]
             self.timeline.set_sections(motion.duration_s, sections)
         self._strip.setCurrentWidget(self._hint if motion is None else self.timeline)
+        if motion is None and self._truth is not None:
+            self._replay(self._truth)
         self._show_time(self.timeline.time_s)
         self._show_caption()
+        self._come_near()
+
+    def show_candies(self, candies: PouredCandies | None) -> None:
+        """Show the candies of the planned pour, or replay those of one that was made; none: none."""
+        if candies is self._candies.candies:
+            return
+        self._candies.show(candies)
+        if self._motion is None:
+            self._replay(candies if candies is not None and candies.is_true else None)
+        self._show_time(self.timeline.time_s)
+        self._show_caption()
+        self._come_near()
+
+    def _replay(self, replayed: PouredCandies | None) -> None:
+        """Offer to replay a pour that was made, shown at its end; none: nothing."""
+        self._strip.setCurrentWidget(self._hint if replayed is None else self.timeline)
+        if replayed is None:
+            self.timeline.set_sections(0.0)
+            return
+        self.timeline.set_sections(
+            replayed.duration_s, [Section(self.tr("simulated pour"), 0.0, replayed.duration_s)]
+        )
+        self.timeline.set_time(replayed.duration_s)
 
     def follow(self, done_s: float | None) -> None:
         """Let the timeline go with the moving arm, the ghost a little ahead; none: it has ended."""
@@ -179,6 +211,28 @@ class ArmView(QWidget):
         self._draw_arm()
         if done_s is not None:
             self.timeline.set_time(done_s)
+        self._come_near()
+
+    @property
+    def _truth(self) -> PouredCandies | None:
+        """The candies of a pour that was made, while nothing is planned; none if there are none."""
+        candies = self._candies.candies
+        return candies if candies is not None and candies.is_true and self._motion is None else None
+
+    def _come_near(self) -> None:
+        """Look at the object while candies leave the cup and when they lie there, else at the whole cell."""
+        motion = self._motion
+        is_pouring = self._is_following and motion is not None and motion.pivot_m is not None
+        if is_pouring and motion is not None:
+            begin_s, end_s = motion.pours_s
+            is_pouring = begin_s - _BEFORE_S <= self.timeline.time_s <= end_s + _AFTER_S
+        is_near = self._object is not None and (is_pouring or self._truth is not None)
+        if is_near != self._is_near:
+            self._is_near = is_near
+            if self._object is not None:  # its walls would hide the candies in it
+                opacity = _SEE_THROUGH if is_near else 1.0
+                self.scene.set_prepared_mesh("object", self._object, opacity=opacity)
+            self.scene.ease(*(("object",) if is_near else ("corners",)))
 
     def _draw_arm(self) -> None:
         """Bring the arm, and the cup in its hand, to where they are, if they were seen elsewhere."""
@@ -229,25 +283,43 @@ class ArmView(QWidget):
             self.scene.set_pose("cup", T_base_cup)
 
     def _show_time(self, time_s: float) -> None:
-        """Put the ghost to where the plan is at a time."""
+        """Put the ghost to where the plan is at a time, and the candies to where they are then."""
         cell, motion = self._cell, self._motion
         if cell is None:
             return
         if motion is None:
             self.scene.set_visible(_GHOST_ARM, False)
-            self.scene.set_visible("planned cup", False)
-            self._now.clear()
+            self._show_replay(time_s)
             return
         moment = motion.at(time_s + AHEAD_S if self._is_following else time_s)
         now_rad = self._joints_rad
         self.scene.set_joints(_GHOST_ARM, moment.joints_rad)
         is_apart = now_rad is None or _differ(moment.joints_rad, now_rad, _APART_RAD)
         self.scene.set_visible(_GHOST_ARM, is_apart)
-        self.scene.set_visible("planned cup", moment.holds_cup and is_apart)
+        self.scene.set_visible(_GHOST_CUP, moment.holds_cup and is_apart)
         if moment.holds_cup:
-            T_base_cup = flange_pose(cell.model.arm, moment.joints_rad) @ motion.T_flange_cup
-            self.scene.set_pose("planned cup", T_base_cup)
+            self.scene.set_pose(_GHOST_CUP, self._cup_at(cell, motion, moment))
+        if motion.pivot_m is not None:
+            self._candies.place(time_s, motion, self._cup_at(cell, motion, motion.at(time_s)))
         self._now.setText(move_text(motion.moves[motion.at(time_s).index].name))
+
+    def _show_replay(self, time_s: float) -> None:
+        truth = self._truth
+        self.scene.set_visible(_GHOST_CUP, truth is not None)
+        if truth is None:
+            self._now.clear()
+            return
+        T_base_cup = truth.cup_pose(time_s)
+        self.scene.set_pose(_GHOST_CUP, T_base_cup)
+        self._candies.place(time_s, None, T_base_cup)
+        self._now.setText(self.tr("The pour as it was driven, with the candies of the simulated cell."))
+
+    def _cup_at(self, cell: RobotCell, motion: ShownMotion, moment: Moment) -> FloatArray:
+        """(4, 4) in the hand, or on its station."""
+        if moment.holds_cup:
+            held: FloatArray = flange_pose(cell.model.arm, moment.joints_rad) @ motion.T_flange_cup
+            return held
+        return make_pose(np.eye(3), cell.station_m)
 
     def _show_caption(self) -> None:
         if self._joints_rad is None:
@@ -258,6 +330,10 @@ class ArmView(QWidget):
             said = self.tr("Solid: the arm now. Transparent: the plan, one second ahead.")
         else:
             said = self.tr("Solid: the arm now. Transparent: the plan at the time selected below.")
+        if self._candies.candies is not None and self._motion is not None:
+            said += " " + self.tr("Candies: as imagined.")
+        elif self._truth is not None:
+            said = self.tr("Simulated outcome: grey candies with a rim are spilled.")
         self._caption.setText(said)
 
 

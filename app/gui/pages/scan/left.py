@@ -14,6 +14,7 @@ from typing_extensions import override
 from app.gui.pages.cell_model import ShownCell
 from app.gui.pages.page import SplitView
 from app.gui.theme import GRID_PX
+from app.gui.views.frustum_legend import FrustumLegend
 from app.gui.views.labels import text_label
 from app.gui.views.scene import Frustum, PreparedMesh, Scene3D
 from app.gui.views.state_mark import State, StateMark
@@ -114,6 +115,7 @@ class ScanView(QWidget):
 
     Attributes:
         scene: the 3D view.
+        legend: of the pyramids in it.
         view_picked: the index of the view whose pyramid was clicked.
     """
 
@@ -126,6 +128,8 @@ class ScanView(QWidget):
         self.scene.setAccessibleName(self.tr("The cell in 3D"))
         self.scene.set_empty_text(self.tr("Reading the cell file …"))
         self.scene.picked.connect(self._pick)
+        self.legend = FrustumLegend(self)
+        self.legend.move(GRID_PX, GRID_PX)
         self._cell: ShownCell | None = None
         self._box: CropBox | None = None
         self._placed: list[int] = []
@@ -187,6 +191,8 @@ class ScanView(QWidget):
                 frusta.append(Frustum(view.name, view.T_base_camera, view.state, k == selected))
                 self._placed.append(k)
         self.scene.set_frusta(_VIEWS, frusta)
+        self.legend.show_states(frustum.state for frustum in frusta)
+        self.legend.raise_()
 
     def bend(self, joints_rad: npt.ArrayLike | None) -> None:
         """Show the arm at joint angles (6,); none: at rest."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -87,6 +87,7 @@ class ScanJobs(QObject):
             SessionWork.reconstruct,
             then=self._look_for_hidden,
             done=self.tr("Scan checked."),
+            steps=self._desk.workspace.steps_to("collision", "quality", "colors"),
         )
 
     def propose(self) -> None:
@@ -146,13 +147,23 @@ class ScanJobs(QObject):
         then: Callable[[object], None] | None = None,
         patience_s: float = 1.0,
         done: str = "",
+        steps: Sequence[str] = (),
     ) -> None:
         desk = self._desk
         host = desk.scan_host if method in (ScanWork.scan, ScanWork.propose) else desk.session_host
         task = desk.workspace.task()
         self._folder = task.folder
         desk.jobs.start(
-            title, self._page, host, method, task, *arguments, then=then, patience_s=patience_s, done=done
+            title,
+            self._page,
+            host,
+            method,
+            task,
+            *arguments,
+            then=then,
+            patience_s=patience_s,
+            done=done,
+            steps=steps,
         )
 
     def _scan_again(self, source: str | None, request: ScanRequest) -> None:

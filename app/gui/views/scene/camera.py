@@ -139,6 +139,17 @@ class Camera:
         azimuth, elevation = DIRECTIONS[direction]
         return replace(self, azimuth_deg=azimuth, elevation_deg=elevation)
 
+    def blended(self, other: Camera, share: float) -> Camera:
+        """Between this camera (0) and another one (1), turned the shorter way."""
+        turn_deg = (other.azimuth_deg - self.azimuth_deg + 180) % 360 - 180
+        center_m = (1 - share) * np.array(self.center_m) + share * np.array(other.center_m)
+        return replace(
+            self.centered(center_m),
+            distance_m=self.distance_m ** (1 - share) * other.distance_m**share,
+            azimuth_deg=(self.azimuth_deg + share * turn_deg + 180) % 360 - 180,
+            elevation_deg=(1 - share) * self.elevation_deg + share * other.elevation_deg,
+        )
+
     def fitted(self, points_m: FloatArray, size: Size) -> Camera:
         """From the same side, so near that points (N, 3) just fill a view of that size."""
         middle = (points_m.min(axis=0) + points_m.max(axis=0)) / 2

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
-from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QEasingCurve, QEvent, QObject, QPointF, Qt, QTimer, QVariantAnimation, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
@@ -19,6 +19,7 @@ _TURN_DEG_PX = 0.35
 _ZOOM_PER_STEP = 0.999
 _KEY_TURN_DEG = 5.0
 _KEY_ZOOM = 0.9
+_EASE_MS = 900
 _TURNING_KEYS = {
     Qt.Key.Key_Left: (-_KEY_TURN_DEG, 0.0),
     Qt.Key.Key_Right: (_KEY_TURN_DEG, 0.0),
@@ -56,6 +57,10 @@ class Navigator(QObject):
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self.refit)
         self._stays_fitted = True
+        self._easing = QVariantAnimation(self, startValue=0.0, endValue=1.0, duration=_EASE_MS)
+        self._easing.setEasingCurve(QEasingCurve.Type.InOutCubic)
+        self._easing.valueChanged.connect(self._take_ease)
+        self._ease_step: Callable[[float], None] = lambda _: None
         self._last = QPointF()
         self._pressed_at: QPointF | None = None
         canvas.setMouseTracking(True)
@@ -73,6 +78,21 @@ class Navigator(QObject):
         self._stays_fitted = True
         self.refit()
 
+    def ease(self, names: tuple[str, ...]) -> None:
+        """Bring layers into view as `fit` does, but as a move that the eye can follow."""
+        self._fitted = names
+        target = self._fitting_camera() if self._stays_fitted else None
+        if target is None:
+            return
+        start = self.camera
+        self._easing.stop()
+        self._ease_step = lambda share: self._move(start.blended(target, share))
+        self._easing.start()
+
+    def _take_ease(self, share: float) -> None:
+        if self._stays_fitted:
+            self._ease_step(share)
+
     def fit_whatever_comes(self) -> None:
         """Bring into view all layers that are set from now on."""
         self._fitted = ()
@@ -85,13 +105,17 @@ class Navigator(QObject):
 
     def refit(self) -> None:
         """Bring into view what is to stay in view."""
-        if not self._stays_fitted:
-            return
+        camera = self._fitting_camera() if self._stays_fitted else None
+        if camera is not None:
+            self._easing.stop()
+            self._move(camera)
+
+    def _fitting_camera(self) -> Camera | None:
+        """From the same side, with all that is to stay in view; none if there is nothing."""
         names = self._fitted or tuple(self._layers)
         layers = [self._layers[name] for name in names if name in self._layers]
         points = np.vstack([np.empty((0, 3)), *(layer.outline_m() for layer in layers if layer.is_visible)])
-        if len(points):
-            self._move(self.camera.fitted(points, self._size()))
+        return self.camera.fitted(points, self._size()) if len(points) else None
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Take the events of mouse and keys, leave all others."""

@@ -295,6 +295,10 @@ class Scene3D(QWidget):
         """
         self._navigator.fit(names)
 
+    def ease(self, *names: str) -> None:
+        """Bring layers into view as a move that the eye can follow, unless the user has moved the view."""
+        self._navigator.ease(names)
+
     def grab_image(self) -> QImage:
         """The picture as it is now, without what lies over it."""
         return self._canvas.grab_image()

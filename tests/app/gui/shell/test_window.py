@@ -31,13 +31,17 @@ def _button(window, name):
     return window.findChild(QPushButton, name)
 
 
+def _action(menu, beginning):
+    return next(action for action in menu.actions() if action.text().startswith(beginning))
+
+
 def _tab(window, key):
     return window.findChild(Tab, f"tab_{key}").state
 
 
 def test_the_first_page_says_what_to_do_and_nothing_is_open(window):
     assert window.shown == "welcome"
-    assert window.findChild(QLabel, "session_name").text() == "No session"
+    assert _button(window, "session_name").text() == "No session"
     assert window.findChild(Chip, "cell_chip").text == "SIMULATED"
     assert _button(window, "stop").isVisible()
     assert _button(window, "next").isHidden()
@@ -56,7 +60,7 @@ def test_tabs_show_the_state_of_the_session_and_the_bar_what_comes_next(window, 
     window.desk.open_session(mug_session)
     assert _tab(window, "imagination").word == "fresh"
     assert _button(window, "next").text() == "Next: review the pours"
-    assert window.findChild(QLabel, "session_name").text() == "mug"
+    assert _button(window, "session_name").text() == "mug"
 
 
 def test_a_failure_is_a_sentence_with_details_and_a_second_try(window, tmp_path, qtbot):
@@ -288,10 +292,41 @@ def test_a_new_session_has_the_name_that_was_typed_and_goes_to_scan(window, qtbo
     menus = Menus(window)
     menus.new_session()
     assert window.shown == "scan"
-    assert window.findChild(QLabel, "session_name").text() == "wood block"
+    assert _button(window, "session_name").text() == "wood block"
     assert window.windowTitle() == "wood block – Poursight"
     primary = window.page("scan").findChild(QPushButton, "primary")
     qtbot.waitUntil(lambda: primary.text() == "Scan the block")
+
+
+def test_the_header_renames_the_session_and_opens_another_one(
+    window, mug_session, qtbot, monkeypatch, tmp_path
+):
+    monkeypatch.setenv("POURSIGHT_SESSIONS", str(tmp_path))
+    Menus(window)
+    name, desk = _button(window, "session_name"), window.desk
+    assert desk.new_session("first") and desk.new_session("second")
+    menu = name.menu()
+    menu.aboutToShow.emit()
+    qtbot.waitUntil(lambda: any(action.text().startswith("first") for action in menu.actions()))
+    assert not any(action.text().startswith("second") for action in menu.actions())  # it is open
+    _action(menu, "Rename").trigger()
+    dialog = window.findChild(QInputDialog, "rename_dialog")
+    dialog.setTextValue("my mug & saucer")
+    dialog.accept()
+    assert name.text() == "my mug && saucer"
+    assert window.windowTitle() == "my mug & saucer – Poursight"
+    _action(menu, "first").trigger()
+    assert desk.workspace.session_name == "first"
+
+
+def test_the_header_begins_a_new_session_at_scan(window, qtbot, monkeypatch, tmp_path):
+    monkeypatch.setenv("POURSIGHT_SESSIONS", str(tmp_path))
+    monkeypatch.setattr(QInputDialog, "getText", lambda *_, **__: ("bowl", True))
+    window.setMenuBar(Menus(window))
+    menu = _button(window, "session_name").menu()
+    assert not _action(menu, "Rename").isEnabled()
+    _action(menu, "New").trigger()
+    assert (window.shown, _button(window, "session_name").text()) == ("scan", "bowl")
 
 
 def test_an_edit_is_kept_though_nothing_was_run_with_it(window, mug_session, qtbot):

@@ -42,7 +42,7 @@ def test_the_last_phase_leaves_those_that_stayed(mug_drop):
 
 def test_phases_without_time_are_left_out(mug_drop):
     settings = Parameters().containability.model_copy(update={"rotation_s": 0.0})
-    assert [phase.key for phase in phases_of(mug_drop.containability, settings)] == ["drop", "push"]
+    assert [phase.key for phase in phases_of(mug_drop.drop, settings)] == ["drop", "push"]
 
 
 def test_lost_candies_lie_on_the_ground_and_kept_ones_in_the_object(mug_drop):

@@ -1,10 +1,18 @@
+import shutil
+
 import numpy as np
 import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QLabel, QPushButton
 
+from app.gui.pages.imagination.drop import ShownBody
 from app.gui.pages.imagination.page import ImaginationPage
+from app.gui.shell.job_bar import JobBar
 from app.jobs.session_work import PictureDrawn
+from core.imagination.results import PoursSoFar
 from core.parameters import apply_settings
+from core.pipeline.news import StageDone
 from tests.app.sessions import QUICK
 
 
@@ -139,6 +147,97 @@ def test_a_damaged_drop_is_explained_on_the_page(page, desk, mug_session, qtbot)
     assert text(page, "drop_verdict") == "The drop cannot be shown"
 
 
+def test_the_model_is_shown_before_anything_was_dropped_on_it(opened, block_session):
+    for stage in ("containability", "judgement", "amount", "pouring", "risk", "evidence"):
+        shutil.rmtree(block_session / stage, ignore_errors=True)
+    page = opened(block_session)
+    assert isinstance(page.content, ShownBody)
+    assert set(page.replay.scene.layers()) == {"object", "ground"}
+    assert "Press Imagine" in text(page, "drop_verdict")
+    assert page.replay.timeline.duration_s == 0
+
+
+def test_a_drop_is_shown_as_soon_as_it_is_there_and_the_verdict_when_it_is_known(
+    opened, mug_session, desk, qtbot, tmp_path
+):
+    kept = shutil.move(mug_session / "judgement", tmp_path / "judgement")
+    page = opened(mug_session)
+    drop = page.drop.drop
+    assert text(page, "drop_verdict").startswith(f"{drop.n_in} of {drop.n_drop} dropped candies stayed.")
+    assert page.replay.timeline.duration_s > 0
+    former = page.content
+    page.replay.timeline.set_time(0.3)
+    shutil.move(kept, mug_session / "judgement")
+    desk.jobs.event_received.emit(StageDone(mug_session, "judgement"))
+    qtbot.waitUntil(lambda: page.content is not former)
+    assert text(page, "drop_verdict").startswith("Open container")
+    assert page.replay.timeline.time_s == pytest.approx(0.3)  # whoever looks at the drop is not disturbed
+
+
+def test_the_wheel_fills_while_pours_are_imagined(opened, mug_session, desk):
+    page = opened(mug_session)
+    p = np.full((8, 3), np.nan)
+    p[2, 1] = 0.5
+    thetas, indents = np.arange(8.0), np.array([0.01, 0.02, 0.03])
+    desk.jobs.event_received.emit(PoursSoFar(thetas, indents, p))
+    assert page.side.wheel.isVisible()
+    assert "P 50 %" in page.side.wheel.describe(2, 1)
+    assert "not imagined yet" in page.side.wheel.describe(0, 0)
+    page.side.wheel.grab()
+    page.side.end_pours()
+    assert page.side.footprint.isVisible()
+
+
+def test_pointing_at_a_tilt_in_the_chart_tilts_the_object_and_the_replay_puts_it_back(opened, mug_session):
+    page = opened(mug_session)
+    page.findChild(QPushButton, "side_page_retention").click()
+    chart, scene, retention = page.side.retention, page.replay.scene, page.drop.retention
+    QTest.mouseClick(
+        chart, Qt.MouseButton.LeftButton, pos=QPoint(round(0.97 * chart.width()), chart.height() // 2)
+    )
+    assert chart.pointed_rad == pytest.approx(retention.tilt_rad[-1])
+    tilted = scene._layers["object"].T_world_layer
+    assert np.degrees(np.arccos(tilted[2, 2])) == pytest.approx(np.degrees(retention.tilt_rad[-1]), abs=0.01)
+    left = round(retention.worst_share_left[-1] * retention.n_load)
+    assert f"{left} of {retention.n_load} candies left" in text(page, "drop_now")
+    QTest.keyClick(chart, Qt.Key.Key_Left)
+    assert chart.pointed_rad == pytest.approx(retention.tilt_rad[-2])
+    page.replay.timeline.set_time(0.1)
+    assert chart.pointed_rad is None
+    np.testing.assert_allclose(scene._layers["object"].T_world_layer, page.drop.moments.T_world_body(0.1))
+
+
+@pytest.mark.system
+def test_imagining_shows_the_model_then_the_drop_then_the_verdict_and_one_bar(
+    opened, block_session, mug_session, desk, qtbot
+):
+    bar = JobBar(desk.jobs)
+    qtbot.addWidget(bar)
+    for stage in ("containability", "judgement", "amount", "pouring", "risk"):
+        shutil.rmtree(mug_session / stage, ignore_errors=True)
+    page = opened(mug_session)
+    seen, fractions, left_s, said, filled = [], [], [], set(), []
+
+    def look(job):
+        fractions.append(job.fraction)
+        left_s.append(job.seconds_left)
+        said.add(text(bar, "job_text"))
+        seen.append((page.drop is not None, page.drop is not None and page.drop.containability is not None))
+
+    desk.jobs.progressed.connect(look)
+    desk.jobs.event_received.connect(
+        lambda news: filled.append(int(np.isfinite(news.p).sum())) if isinstance(news, PoursSoFar) else None
+    )
+    primary(page).click()
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)
+    assert {(False, False), (True, False), (True, True)} <= set(seen)
+    assert fractions == sorted(fractions)
+    known_s = [one for one in left_s if one is not None]
+    assert known_s == sorted(known_s, reverse=True)
+    assert filled == list(range(1, 25))
+    assert any("Pours" in one and "of 24" in one for one in said)
+
+
 def test_another_session_leaves_nothing_of_the_one_before(opened, mug_session, desk, tmp_path):
     page = opened(mug_session)
     desk.workspace.open(tmp_path / "new")
@@ -162,9 +261,12 @@ def test_imagined_with_a_high_threshold_a_mug_is_none_and_its_pictures_fill_the_
     assert "(containers: over 90" in text(page, "drop_verdict")
     assert "an open container" in text(page, "drop_reason")
     seen = []
-    desk.jobs.event_received.connect(
-        lambda _: seen.append(sum(picture.path is not None for picture in page.pictures.strip.pictures))
-    )
+
+    def count(news):
+        if isinstance(news, PictureDrawn):
+            seen.append(sum(picture.path is not None for picture in page.pictures.strip.pictures))
+
+    desk.jobs.event_received.connect(count)
     page.pictures.button.click()
     assert page.pictures.strip.pictures[0].caption == "Start"
     qtbot.waitUntil(lambda: desk.jobs.is_idle)

@@ -1,0 +1,236 @@
+"""The right half: the verdict with its reason, what it was found with, and the parameters of the next run."""
+
+from __future__ import annotations
+
+from math import degrees, isfinite, isinf
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+
+from app.gui.desk.desk import Desk
+from app.gui.pages.fact_grid import Fact, FactGrid
+from app.gui.pages.imagination.drop import ShownDrop
+from app.gui.pages.imagination.view import phase_title
+from app.gui.pages.mode_row import ModeRow
+from app.gui.pages.page import SidePanel
+from app.gui.pages.parameters_part import ParametersPart, n_different
+from app.gui.pages.staleness import StaleNote
+from app.gui.theme import GRID_PX
+from app.gui.views.footprint import FootprintView
+from app.gui.views.labels import say, text_label
+from app.gui.views.omega_bar import OmegaBar
+from app.gui.views.pour_map import MappedPour, PourMap
+from app.gui.views.retention_chart import RetentionChart
+from core.imagination.results import PoursSoFar
+from core.imagination.retention.result import Retention, retention_sentence
+from core.pipeline.session_view import IMAGINED
+from core.report.plot_geometry import FootprintPlan
+from core.report.sentences import duration_text, verdict_reason, verdict_sentence
+from core.stages import MESH, groups_of, stages_before
+
+MM = 1000.0
+STAGES = stages_before("risk", MESH)[1:]
+"""What the page runs; the collision model is made again with them."""
+GROUPS = groups_of(*STAGES)
+_LOWER_PX = 38 * GRID_PX
+"""Of footprint or editor, at the least."""
+
+
+class VerdictSide(SidePanel):
+    """What was found, and what it was found with.
+
+    Signals: `empty_wanted` when the button of the empty state is pressed.
+
+    Attributes:
+        failed: says why the result cannot be shown.
+        stale: says when the result is not what the parameters would give now.
+        omega: the paper's measure.
+        pages: footprint, retention or parameters.
+        footprint: which candies stayed.
+        retention: how many stay as it is tilted.
+        wheel: the pours while they are imagined.
+        facts: a few numbers.
+    """
+
+    empty_wanted = Signal()
+
+    def __init__(self, desk: Desk) -> None:
+        super().__init__(self.tr("Imagine"))
+        self._verdict = text_label("drop_verdict", "verdict")
+        self._reason = text_label("drop_reason")
+        self.failed = text_label("drop_failed", "failed")
+        self._empty_button = QPushButton()
+        self._empty_button.setObjectName("drop_empty_button")
+        self._empty_button.clicked.connect(self.empty_wanted)
+        self.stale = StaleNote(("reconstruction", "collision", *IMAGINED))
+        self.omega = OmegaBar()
+        self._desk = desk
+        self._is_filling = False
+        self._parameters: ParametersPart | None = None
+        self.pages = ModeRow("side_page")
+        self.pages.add("footprint", self.tr("Footprint"), self.tr("From above: which candies stayed"))
+        self.pages.add("retention", self.tr("Tilting"), self.tr("How many candies stay as it is tilted"))
+        self.pages.add("parameters", "", self.tr("What the next run is imagined with"))
+        self.pages.chosen.connect(self._turn)
+        self._stack = QStackedWidget()
+        self._result = self._make_result()
+        self._stack.addWidget(self._result)
+        self._stack.setMinimumHeight(_LOWER_PX)
+        # it takes the space that is left: by its size hint the panel would scroll long before it has to
+        self._stack.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Ignored)
+        for widget in (
+            self._verdict,
+            self._reason,
+            self.failed,
+            self._empty_button,
+            self.stale,
+            self.omega,
+            self.pages,
+        ):
+            self.body.addWidget(widget)
+        self.body.addWidget(self._stack, 1)
+        desk.workspace.parameters_changed.connect(self._count)
+        self._count()
+
+    def _make_result(self) -> QWidget:
+        self.footprint = FootprintView()
+        self.facts = FactGrid("drop_facts")
+        self.retention = RetentionChart()
+        self.facts.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        result = QWidget()
+        column = QVBoxLayout(result)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(GRID_PX)
+        self._picture = QStackedWidget()
+        self._picture.addWidget(self.footprint)
+        self._picture.addWidget(self.retention)
+        self.wheel = PourMap()
+        self.wheel.setMinimumSize(_LOWER_PX // 2, _LOWER_PX // 2)
+        self.wheel.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
+        self._picture.addWidget(self.wheel)
+        column.addWidget(self._picture, 1)
+        column.addWidget(self.facts)
+        return result
+
+    @property
+    def parameters(self) -> ParametersPart:
+        """The parameters; made when they are first wanted."""
+        if self._parameters is None:
+            self._parameters = ParametersPart(self._desk, GROUPS)
+            self._stack.addWidget(self._parameters)
+        return self._parameters
+
+    def _turn(self, page: str) -> None:
+        self._stack.setCurrentWidget(self.parameters if page == "parameters" else self._result)
+        if page != "parameters":
+            first = self.wheel if self._is_filling else self.footprint
+            self._picture.setCurrentWidget(self.retention if page == "retention" else first)
+
+    def _count(self) -> None:
+        n = n_different(self._desk.workspace, GROUPS)
+        text = self.tr("Parameters")
+        differing = self.tr("1 differs") if n == 1 else self.tr("{n} differ").format(n=n)
+        self.pages.set_text("parameters", f"{text} ({differing})" if n else text)
+
+    def show_empty(self, sentence: str, button: str) -> None:
+        """Show what will be here, and the button that leads there; an empty text leaves the button away."""
+        self._verdict.setText(sentence)
+        self._reason.hide()
+        self._empty_button.setText(button)
+        self._empty_button.setVisible(bool(button))
+        self.omega.hide()
+        self.footprint.clear()
+        self.facts.set_facts([])
+        self.retention.show_retention(None)
+
+    def show_drop(self, drop: ShownDrop) -> None:
+        """Show what was found."""
+        found = drop.containability
+        self._empty_button.hide()
+        if found is None:
+            self._verdict.setText(self._so_far(drop))
+            self._reason.hide()
+            self.omega.hide()
+            self.footprint.clear()
+        else:
+            self._verdict.setText(verdict_sentence(found))
+            say(self._reason, verdict_reason(found, drop.n_on_top))
+            self.omega.set_values(found.omega, found.omega_threshold)
+            self.omega.show()
+            self.footprint.set_footprint(FootprintPlan.of(found, drop.outline_m, drop.indents_m))
+        self.facts.set_facts([*self._retention_facts(drop), *self._drop_facts(drop)])
+        self.retention.show_retention(drop.retention)
+
+    def _so_far(self, drop: ShownDrop) -> str:
+        """What is known before the object was filled."""
+        said = self.tr("{n} of {all} dropped candies stayed. How much it holds is found out next.")
+        return said.format(n=drop.drop.n_in, all=drop.drop.n_drop)
+
+    def show_pours_so_far(self, so_far: PoursSoFar) -> None:
+        """Show the wheel as it fills; the first news of it turn to it."""
+        self.wheel.set_pours(
+            [
+                MappedPour(i, j, float(theta_rad), float(indent_m), float(so_far.p[i, j]))
+                for i, theta_rad in enumerate(so_far.theta_rad)
+                for j, indent_m in enumerate(so_far.indent_m)
+            ],
+            None,
+        )
+        if not self._is_filling:
+            self._is_filling = True
+            if self.pages.mode == "footprint":
+                self._picture.setCurrentWidget(self.wheel)
+
+    def end_pours(self) -> None:
+        """Put away the wheel: what came of it is on the Pours page."""
+        self._is_filling = False
+        self._turn(self.pages.mode)
+
+    def _retention_facts(self, drop: ShownDrop) -> list[Fact]:
+        capacity, retention = drop.capacity, drop.retention
+        if capacity is None or retention is None:
+            return []
+        held = self.tr("{n:.0f} candies, {ml:.0f} ml level").format(n=capacity.n_level, ml=capacity.volume_ml)
+        water = self.tr("Filled from above until it overflowed, then perturbed. Water: {ml:.0f} ml.").format(
+            ml=capacity.geometric_volume_ml
+        )
+        return [
+            Fact(self.tr("Holds"), held, f"{water} {capacity.remark}".strip()),
+            Fact(self.tr("Tilted"), self._tilted(retention), retention_sentence(retention)),
+        ]
+
+    def _tilted(self, retention: Retention) -> str:
+        if isinf(retention.first_rad):
+            said = self.tr("nothing falls out, even at {all:.0f}°")
+        elif isfinite(retention.half_rad):
+            said = self.tr("nothing falls out up to {first:.0f}°, half do by {half:.0f}°")
+        else:
+            said = self.tr("nothing falls out up to {first:.0f}°, most stay to {all:.0f}°")
+        return said.format(
+            first=degrees(retention.holds_rad),
+            half=degrees(retention.half_rad),
+            all=degrees(retention.tilt_rad[-1]),
+        )
+
+    def _drop_facts(self, drop: ShownDrop) -> list[Fact]:
+        dropped = self.tr("{n} candies, {width:.1f} mm wide").format(
+            n=drop.drop.n_drop, width=drop.particle.diameter_m * MM
+        )
+        return [
+            Fact(self.tr("Dropped"), dropped, self.tr("How many candies were dropped, and their diameter")),
+            Fact(
+                self.tr("Inside after"),
+                " / ".join(f"{phase_title(phase.key)} {phase.n_inside}" for phase in drop.phases),
+                self.tr("Candies in the object's bounding box after each phase of the drop"),
+            ),
+            Fact(
+                self.tr("Seed"),
+                str(drop.seed),
+                self.tr("Of all randomness: the same seed and parameters give the same result"),
+            ),
+            Fact(
+                self.tr("Took"),
+                duration_text(drop.seconds),
+                self.tr("Computing time of the drop"),
+            ),
+        ]
