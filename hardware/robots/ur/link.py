@@ -79,7 +79,8 @@ CONNECT_S = 10.0
 """Connecting takes half a second, and 5 s until ur_rtde gives up starting its program."""
 LOST_S = 0.37
 """A state that is older, and still so after `_LOOK_S`, is lost: the worker is frozen, or the link is."""
-_LOOK_S = 0.03
+_LOOK_S, _LOOKS = 0.03, 6
+_SUPERVISE_S = 0.015
 _POLL_S = 0.004
 _ANSWER_S = 2.0
 _END_S = 1.0
@@ -153,12 +154,13 @@ class WorkerLink:
         """
         if self._loss is not None:
             raise self._loss
-        raw = self._mailbox.read()
-        if self._silence(raw):
+        raw, silence = self._newest()
+        for _ in range(_LOOKS):
+            if not silence:
+                break
             # Where the whole machine stood still, the worker gets to run again, too, and sends the newest.
-            self._is_ending.wait(_LOOK_S)
-            raw = self._mailbox.read()
-        silence = self._silence(raw)
+            self._is_ending.wait(_LOOK_S / _LOOKS)
+            raw, silence = self._newest()
         if raw is None or silence:
             raise self._lost(silence)
         return raw
@@ -208,12 +210,14 @@ class WorkerLink:
         self._process.end(_END_S)
         self._thread.join()
 
-    def _silence(self, raw: AnyArray | None) -> str:
-        """What is wrong with the newest state; empty if nothing is."""
-        now_s = time.monotonic()
+    def _newest(self) -> tuple[AnyArray | None, str]:
+        """The newest state, and what is wrong with it; empty if nothing is."""
+        now_s = time.monotonic()  # before it is read: this thread may have to wait then
+        raw = self._mailbox.read()
         if raw is None or self._is_ending.is_set() or now_s - raw["time_s"] > LOST_S:
-            return "sends nothing"
-        return "takes no commands any more" if now_s > raw["due_s"] else ""
+            return raw, "sends nothing"
+        # By the state's own time: a worker that did not run is not stuck.
+        return raw, "takes no commands any more" if raw["time_s"] > raw["due_s"] else ""
 
     def _send(self, request: Request, within_s: float) -> None:
         if not self._send_lock.acquire(timeout=within_s):
@@ -255,7 +259,7 @@ class WorkerLink:
         while not self._is_ending.is_set():
             try:
                 self._pulse.beat()
-                wait_for_handles([self._connection, self._process.sentinel], _LOOK_S)
+                wait_for_handles([self._connection, self._process.sentinel], _SUPERVISE_S)
                 while self._connection.poll():
                     self._take(self._connection.recv())
                 self.state()

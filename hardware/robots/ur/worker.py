@@ -38,6 +38,7 @@ from hardware.errors import (
 )
 from hardware.realtime import take_precedence
 from hardware.robots.ur.checks import deviation, moved_at_rest, output_changed, raise_if, unsafe
+from hardware.robots.ur.heartbeat import Heartbeat
 from hardware.robots.ur.messages import (
     FIELDS,
     RUNTIME_PLAYING,
@@ -69,10 +70,6 @@ _HEARD_S = 0.2
 """The thread that makes the control calls loops within milliseconds; after this time it is stuck, ..."""
 _HANDSHAKE_S = 2.0
 """... but for calls that wait for the controller's answers, over a slow link, or for the arm's rest."""
-_PROGRAM_SILENT_S = 2.0
-"""A busy machine may keep a program from running for a second; somebody who suspends it takes longer."""
-_LOOP_S = 0.05
-"""Of a pause in this thread's own work no more counts: this process did not run, either."""
 
 
 def serve(connection: Connection, setup: Setup, mailbox: StateMailbox, pulse: Pulse) -> NoReturn:
@@ -110,8 +107,7 @@ class _Worker:
         self._switched: set[int] = set()
         self._is_over = False
         self._refusal = "The arm was stopped; recover the robot first."
-        self._pulse, self._heard = pulse, 0
-        self._looked_s, self._silent_s = time.monotonic(), 0.0
+        self._program = Heartbeat(pulse, os.getppid())
         self._due_s = float("inf")
         self._fresh = Event()
         self._kicked_s = 0.0
@@ -144,17 +140,12 @@ class _Worker:
 
     def _listen_for_program(self) -> None:
         """A program that stood still does not go on: somebody has to look at the arm first."""
-        now_s, heard = time.monotonic(), self._pulse.count
-        self._silent_s += min(now_s - self._looked_s, _LOOP_S)
-        if heard != self._heard:
-            self._silent_s = 0.0
-        self._looked_s, self._heard = now_s, heard
-        if self._silent_s < _PROGRAM_SILENT_S or self._is_over or not heard:
+        problem = self._program.problem()
+        if not problem or self._is_over:
             return
         self._is_over = True
         self._refusal = (
-            f"This program stood still for {_PROGRAM_SILENT_S:g} s or longer, so the arm was stopped; see "
-            "that all is well, then recover the robot and plan anew."
+            f"{problem}, so the arm was stopped; see that all is well, then recover the robot and plan anew."
         )
         motion, self._motion = self._motion, None
         if motion is not None:
