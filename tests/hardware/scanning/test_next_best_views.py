@@ -10,8 +10,13 @@ from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.reconstruction.stage import reconstruct
 from core.scan import Scan
-from hardware.cell import open_cell, read_cell
-from hardware.scanning.next_best_views import propose, take_next_best_views
+from hardware.cell import CellSettings, open_cell, read_cell
+from hardware.scanning.next_best_views import (
+    MOST_VIEWS_BY_DEFAULT,
+    look_inside,
+    propose,
+    take_next_best_views,
+)
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
 from hardware.simulation.objects import builtin_object
@@ -25,8 +30,8 @@ SEED = 2
 CELL = read_cell()
 
 
-def scanning(mesh: TriangleMesh, seed: int):
-    return open_cell(CELL, world_with(mesh, CELL.place, seed), seed)
+def scanning(mesh: TriangleMesh, seed: int, settings: CellSettings = CELL):
+    return open_cell(settings, world_with(mesh, settings.place, seed), seed)
 
 
 def depth_m(scan: Scan) -> float:
@@ -65,3 +70,26 @@ def test_nothing_is_proposed_where_everything_was_seen():
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad[::2]))
         assert propose(cell, procedure.volume, *procedure.camera_facts()) == []
+
+
+def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
+    with scanning(tube(0.04, DEPTH_M), SEED) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad))
+        n_views = look_inside(cell, procedure, len(cell.views_rad))
+        n_more = look_inside(cell, procedure, len(cell.views_rad))
+        assert depth_m(procedure.scan()) > DEPTH_M / 2
+    assert n_views >= 1
+    assert n_views + n_more <= MOST_VIEWS_BY_DEFAULT
+
+
+def test_a_scan_does_not_look_inside_where_it_is_told_not_to_or_has_seen_all():
+    scan = CELL.scan.model_copy(update={"look_inside": False})
+    with scanning(tube(0.04, DEPTH_M), SEED, CELL.model_copy(update={"scan": scan})) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad[::3]))
+        assert look_inside(cell, procedure, len(procedure.records)) == 0
+    with scanning(builtin_object("bowl"), 0) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad[::2]))
+        assert look_inside(cell, procedure, len(procedure.records)) == 0
