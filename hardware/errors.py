@@ -69,3 +69,11 @@ class OutputChanged(RobotStopped):
 
 class TrackingLost(RobotStopped):
     """The arm was not where it should have been and was stopped."""
+
+
+class GripperError(RobotError):
+    """The gripper does not answer, reports a fault, or does not do what it was asked for."""
+
+
+class ObjectLost(RobotStopped):
+    """The gripper holds nothing (any more) where it should hold the cup."""

@@ -153,6 +153,7 @@ class ReadyStep(Enum):
     UNLOCK = "unlock the protective stop"
     POWER_ON = "switch the power on"
     RELEASE_BRAKES = "release the brakes"
+    ACTIVATE_GRIPPER = "activate the gripper"
 
 
 class Robot(_Device, Protocol):
@@ -257,6 +258,11 @@ class Gripper(_Device, Protocol):
     @property
     def is_closed(self) -> bool:
         """Whether it was last commanded to close, as read back from the device."""
+        ...
+
+    @property
+    def is_holding(self) -> bool | None:
+        """Whether it holds something; none where it does not report that."""
         ...
 
     def close(self) -> None:

@@ -12,9 +12,10 @@ import numpy.typing as npt
 from core.errors import InputError, Remedy
 from core.motion.clearance import MotionScene
 from hardware.cameras.replay import ReplayCamera
-from hardware.cell.devices import real_arm, real_gripper, scan_devices, tool_output_gripper, ur_robot
+from hardware.cell.devices import real_arm, real_gripper, scan_devices, simulated_gripper, ur_robot
+from hardware.cell.gripper_settings import Joints
 from hardware.cell.scene import motion_scene
-from hardware.cell.settings import CellSettings, Joints
+from hardware.cell.settings import CellSettings
 from hardware.interfaces import Camera, Gripper, Robot
 from hardware.simulation.ur_controller.process import ControllerProcess
 from hardware.simulation.world import World
@@ -151,9 +152,10 @@ def _open_simulated(settings: CellSettings, joints_rad: npt.ArrayLike | None) ->
         _loopback_address(),
         np.asarray(robot.home_rad if joints_rad is None else joints_rad, dtype=float).tolist(),
         simulation.speed_up,
+        robotiq=settings.gripper.model,
     )
     arm = ur_robot(settings, controller.address, f"simulated {robot.model}")
-    gripper = tool_output_gripper(settings.gripper, arm, simulation.speed_up)
+    gripper = simulated_gripper(settings.gripper, arm, simulation.speed_up)
     return Arm(settings, arm, gripper, motion_scene(settings), controller)
 
 

@@ -14,7 +14,10 @@ from hardware.cameras.openni import OpenNICamera
 from hardware.cameras.realsense import RealSenseCamera
 from hardware.cameras.replay import ReplayCamera
 from hardware.cameras.simulated import SimulatedCamera
-from hardware.cell.settings import ARMS, CameraSettings, CellSettings, GripperSettings
+from hardware.cell.gripper_settings import GripperSettings
+from hardware.cell.settings import ARMS, CameraSettings, CellSettings
+from hardware.grippers.robotiq import RobotiqGripper
+from hardware.grippers.robotiq_line import RobotiqAddress
 from hardware.grippers.simulated import SimulatedGripper
 from hardware.grippers.tool_output import ToolOutputGripper
 from hardware.interfaces import Camera, Gripper, Robot
@@ -46,7 +49,15 @@ def ur_robot(settings: CellSettings, address: str | None = None, name: str | Non
         gripper.voltage_v if gripper.kind == "ur5" else None,
         name=name,
         cup_kg=gripper.cup_kg,
+        robotiq=robotiq_address(gripper, address),
     )
+
+
+def robotiq_address(settings: GripperSettings, controller: str) -> RobotiqAddress | None:
+    """Where a cell's Robotiq gripper is served; none if it has another one."""
+    if settings.kind != "robotiq":
+        return None
+    return RobotiqAddress(settings.address or controller, settings.port)
 
 
 def real_arm(settings: CellSettings) -> UR5Robot:
@@ -78,8 +89,10 @@ def real_gripper(settings: CellSettings, robot: UR5Robot) -> Gripper:
     return _of_kind(_GRIPPERS, "gripper", settings.gripper.kind)(settings.gripper, robot)
 
 
-def tool_output_gripper(settings: GripperSettings, robot: UR5Robot, speed_up: float = 1.0) -> Gripper:
-    """Build a gripper at a tool output; a simulated controller may run some times faster than the clock."""
+def simulated_gripper(settings: GripperSettings, robot: UR5Robot, speed_up: float) -> Gripper:
+    """Build the driver of the gripper in a simulated arm's hand: the controller's clock runs faster."""
+    if settings.kind == "robotiq":
+        return _robotiq(settings, robot)
     return ToolOutputGripper(robot, settings.output, settings.action_s / speed_up)
 
 
@@ -137,7 +150,14 @@ _REAL_ARMS: dict[str, Callable[[CellSettings], UR5Robot]] = {"ur5": ur_robot}
 _ROBOTS: dict[str, Callable[[CellSettings], Robot]] = {"simulated": _kinematic, **_REAL_ARMS}
 """All but the arm of a recorded scan, which follows its camera."""
 
+
+def _robotiq(settings: GripperSettings, robot: UR5Robot) -> Gripper:
+    assert settings.model is not None and robot.robotiq is not None, "checked by the validator for robotiq"
+    return RobotiqGripper(robot, robot.robotiq, settings.model, settings.grip)
+
+
 _GRIPPERS: dict[str, Callable[[GripperSettings, UR5Robot], Gripper]] = {
     "simulated": lambda _settings, _robot: SimulatedGripper(),
-    "ur5": tool_output_gripper,
+    "ur5": lambda settings, robot: ToolOutputGripper(robot, settings.output, settings.action_s),
+    "robotiq": _robotiq,
 }

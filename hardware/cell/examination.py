@@ -13,9 +13,10 @@ from core.geometry import FloatArray
 from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose
 from hardware.cell.cell import open_cell
-from hardware.cell.devices import real_arm, real_camera
+from hardware.cell.devices import real_arm, real_camera, robotiq_address
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import ARMS, CellSettings
+from hardware.grippers.robotiq_line import Contact, RobotiqLine, refuse_faulty
 from hardware.interfaces import Camera, Kinematics
 from hardware.modes import unreadiness
 from hardware.simulation.world import World
@@ -36,7 +37,7 @@ def examine_cell(settings: CellSettings) -> Iterator[Finding]:
     """Try robot, gripper, camera and scan views; yields one finding after the other."""
     yield Finding("cell", settings.name + (" (SIMULATED)" if settings.is_simulated else ""))
     yield examine_robot(settings)
-    yield Finding("gripper", f"{settings.gripper.kind}, output {settings.gripper.output}")
+    yield examine_gripper(settings)
     yield examine_camera(settings)
     if settings.camera.kind != "replay":
         yield from _views(settings)
@@ -62,6 +63,28 @@ def examine_robot(settings: CellSettings) -> Finding:
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
     return Finding("robot", said, problem)
+
+
+def examine_gripper(settings: CellSettings) -> Finding:
+    """Say what holds the cup; a Robotiq gripper is asked how it is."""
+    gripper, robot = settings.gripper, settings.robot
+    if gripper.kind != "robotiq":
+        return Finding("gripper", f"{gripper.kind}, output {gripper.output}")
+    if not robot.is_real:
+        return Finding("gripper", f"simulated Robotiq {gripper.model}")
+    assert robot.address is not None, "checked by the validator for ur5"
+    address = robotiq_address(gripper, robot.address)
+    assert address is not None, "it is one"
+    subject = f"Robotiq {gripper.model} at {address}"
+    try:
+        with RobotiqLine(address) as line:
+            refuse_faulty(line, address)
+            contact = line.get("OBJ")
+    except PoursightError as error:
+        return Finding("gripper", subject, str(error))
+    return Finding(
+        "gripper", f"{subject}, holds {'something' if contact == Contact.WHILE_CLOSING else 'nothing'}"
+    )
 
 
 def _kinematics_read(kinematics: Kinematics) -> str:

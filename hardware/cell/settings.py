@@ -4,79 +4,64 @@ from __future__ import annotations
 
 from math import pi, radians
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from core.geometry import FloatArray, rotation_error
+from core.geometry import FloatArray
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.pour.cell import MotionSettings
 from core.parameters.fields import OURS, Group, choice, declaration, quantity
 from core.scan.model import CropBox, Intrinsics
+from hardware.cell.gripper_settings import (
+    CELL,
+    Coordinate,
+    Edge,
+    GripperSettings,
+    Joints,
+    Point,
+    Row,
+    refuse_no_pose,
+)
 from hardware.simulation.depth_noise import DepthNoise
 from hardware.simulation.set_up import SetUp
 
 ARMS: dict[str, ArmModel] = {"UR5": UR5, "UR5e": UR5E}
 """The models that `robot.model` names."""
-_CELL = "the cell's calibration"
-ROTATION_TOLERANCE = 1e-3
 SMALLEST_EDGE_M = 0.01
-
-Coordinate = Annotated[float, Field(ge=-10, le=10)]
-Point = tuple[Coordinate, Coordinate, Coordinate]
-Edge = Annotated[float, Field(gt=0, le=1)]
-Angle = Annotated[float, Field(ge=-2 * pi, le=2 * pi)]
-Joints = tuple[Angle, Angle, Angle, Angle, Angle, Angle]
-Row = tuple[Coordinate, Coordinate, Coordinate, Coordinate]
-
-
-_GRASP: tuple[Row, Row, Row, Row] = (
-    (1.0, 0.0, 0.0, 0.0),
-    (0.0, 0.0, -1.0, 0.0),
-    (0.0, 1.0, 0.0, 0.15),
-    (0.0, 0.0, 0.0, 1.0),
-)
-"""The cup's axis 0.15 m before the flange, its mouth towards -y, where the camera is."""
-
-
-def _refuse_no_pose(name: str, pose: FloatArray) -> None:
-    if np.abs(pose[3] - [0, 0, 0, 1]).max() > 0 or rotation_error(pose[:3, :3]) > ROTATION_TOLERANCE:
-        raise ValueError(f"{name} is not a pose: its 3x3 part must be a rotation, its last row 0 0 0 1")
 
 
 class CameraSettings(Group):
     """Which camera hangs at the flange, and where."""
 
     kind: Literal["simulated", "realsense", "openni", "replay"] = choice(
-        ..., "simulated, realsense, openni (PrimeSense), or replay of a recorded scan.", source=_CELL
+        ..., "simulated, realsense, openni (PrimeSense), or replay of a recorded scan.", source=CELL
     )
-    serial: str | None = choice(
-        None, "RealSense: its serial number; none: the first one found.", source=_CELL
-    )
+    serial: str | None = choice(None, "RealSense: its serial number; none: the first one found.", source=CELL)
     recording: Path | None = choice(
         None, "replay: the session or folder to play; RealSense: a .db3 or .bag file instead of a device.",
-        source=_CELL,
+        source=CELL,
     )  # fmt: skip
     intrinsics: tuple[float, float, float, float] | None = choice(
-        None, "openni: fx, fy, cx, cy in pixels at 640 x 480, which the device does not know.", source=_CELL
+        None, "openni: fx, fy, cx, cy in pixels at 640 x 480, which the device does not know.", source=CELL
     )
     T_flange_camera: tuple[Row, Row, Row, Row] = choice(
-        ..., "Hand-eye calibration: takes camera points (z forward, y down) to the flange.", source=_CELL
+        ..., "Hand-eye calibration: takes camera points (z forward, y down) to the flange.", source=CELL
     )
     size_m: tuple[Edge, Edge, Edge] = quantity(
-        (0.18, 0.036, 0.025), "Its housing along its own x, y, z, to be kept clear.", unit="m", source=_CELL
+        (0.18, 0.036, 0.025), "Its housing along its own x, y, z, to be kept clear.", unit="m", source=CELL
     )
     baseline_m: float = quantity(
-        0.075, "Where its projector is, along its x.", unit="m", source=_CELL, low=0, high=0.3
+        0.075, "Where its projector is, along its x.", unit="m", source=CELL, low=0, high=0.3
     )
     min_range_m: float = quantity(
-        0.35, "Nearer than this it measures nothing.", unit="m", source=_CELL, low=0, high=2
+        0.35, "Nearer than this it measures nothing.", unit="m", source=CELL, low=0, high=2
     )
 
     @model_validator(mode="after")
     def _fits(self) -> CameraSettings:
-        _refuse_no_pose("T_flange_camera", self.pose)
+        refuse_no_pose("T_flange_camera", self.pose)
         if self.kind == "replay" and self.recording is None:
             raise ValueError("a replay camera needs 'recording', the session or folder to play")
         if self.kind == "openni" and self.intrinsics is None:
@@ -107,11 +92,11 @@ class RobotSettings(Group):
     kind: Literal["simulated", "ur5", "replay"] = choice(
         ...,
         "simulated (in this process), ur5, or replay: it is where the recorded view was taken.",
-        source=_CELL,
+        source=CELL,
     )
-    address: str | None = choice(None, "ur5: the controller's address in the network.", source=_CELL)
-    model: Literal["UR5", "UR5e"] = choice("UR5", "The arm's model.", source=_CELL)
-    home_rad: Joints = choice(..., "Where the arm rests, clear of everything.", source=_CELL)
+    address: str | None = choice(None, "ur5: the controller's address in the network.", source=CELL)
+    model: Literal["UR5", "UR5e"] = choice("UR5", "The arm's model.", source=CELL)
+    home_rad: Joints = choice(..., "Where the arm rests, clear of everything.", source=CELL)
     joint_speed_rad_s: float = quantity(
         0.8, "Speed of the fastest joint while scanning.", unit="rad/s", source=OURS, low=0.01, high=pi
     )
@@ -131,68 +116,12 @@ class RobotSettings(Group):
         return self.kind not in ("simulated", "replay")
 
 
-class GripperSettings(Group):
-    """What holds the cup."""
-
-    kind: Literal["simulated", "ur5"] = choice(
-        "simulated", "simulated, or ur5: by a digital output of the arm's tool.", source=_CELL
-    )
-    output: int = quantity(
-        0,
-        "Tool digital output that closes it (afag EU-20 in the paper).",
-        unit="",
-        source="paper",
-        low=0,
-        high=1,
-    )
-    voltage_v: Literal[12, 24] = choice(
-        24, "ur5: supply of the tool connector, which is set on connecting (afag EU-20: 24 V).", source=_CELL
-    )
-    radius_m: float = quantity(
-        0.04, "Radius of the capsule it fills.", unit="m", source=_CELL, low=0.005, high=0.3
-    )
-    length_m: float = quantity(
-        0.12, "How far it reaches beyond the flange.", unit="m", source=_CELL, low=0, high=0.5
-    )
-    T_flange_grasp: tuple[Row, Row, Row, Row] = choice(
-        _GRASP,
-        "The robot's tool frame: origin on the axis of the cup in the hand, z along it to the cup's mouth.",
-        source=_CELL,
-    )
-    grip_height_m: float = quantity(
-        0.07, "How far above the cup's base it grips.", unit="m", source=_CELL, low=0.005, high=0.5
-    )
-    payload_kg: float = quantity(
-        1.2, "Mass at the flange: gripper, camera and full cup.", unit="kg", source=_CELL, low=0, high=5
-    )
-    payload_center_m: Point = quantity(
-        (0.0, -0.02, 0.07), "Their centre of mass, in the flange's frame.", unit="m", source=_CELL
-    )
-    cup_kg: float = quantity(
-        0.0, "Of that the full cup: the controller is told when the hand takes and leaves it; 0: it is not.",
-        unit="kg", source=_CELL, low=0, high=5, is_written=False,
-    )  # fmt: skip
-    action_s: float = quantity(0.5, "Time it takes to open or close.", unit="s", source=_CELL, low=0, high=10)
-
-    @model_validator(mode="after")
-    def _grasps(self) -> GripperSettings:
-        _refuse_no_pose("T_flange_grasp", self.grasp_pose)
-        if self.cup_kg > self.payload_kg:
-            raise ValueError("cup_kg is a part of payload_kg and must not exceed it")
-        return self
-
-    @property
-    def grasp_pose(self) -> FloatArray:
-        """`T_flange_grasp` (4, 4), which is the robot's tool frame."""
-        return np.array(self.T_flange_grasp)
-
-
 class BoxSettings(Group):
     """A box along the base's axes."""
 
-    name: str = choice(..., "What people call it.", source=_CELL)
-    min_m: Point = quantity(..., "Lower corner.", unit="m", source=_CELL)
-    max_m: Point = quantity(..., "Upper corner.", unit="m", source=_CELL)
+    name: str = choice(..., "What people call it.", source=CELL)
+    min_m: Point = quantity(..., "Lower corner.", unit="m", source=CELL)
+    max_m: Point = quantity(..., "Upper corner.", unit="m", source=CELL)
 
     @model_validator(mode="after")
     def _has_volume(self) -> BoxSettings:
@@ -207,25 +136,21 @@ class PlaceSettings(Group):
     """Table, platform and where the object may stand."""
 
     table_height_m: float = quantity(
-        ..., "Top of the table that carries robot and platform.", unit="m", source=_CELL, low=-2, high=2
+        ..., "Top of the table that carries robot and platform.", unit="m", source=CELL, low=-2, high=2
     )
     platform_min_m: tuple[Coordinate, Coordinate] = quantity(
-        ..., "The transparent platform's lower corner, x and y.", unit="m", source=_CELL
+        ..., "The transparent platform's lower corner, x and y.", unit="m", source=CELL
     )
     platform_max_m: tuple[Coordinate, Coordinate] = quantity(
-        ..., "Its upper corner, x and y.", unit="m", source=_CELL
+        ..., "Its upper corner, x and y.", unit="m", source=CELL
     )
     platform_height_m: float = quantity(
-        ..., "The platform's top, which the camera does not see.", unit="m", source=_CELL, low=-2, high=2
+        ..., "The platform's top, which the camera does not see.", unit="m", source=CELL, low=-2, high=2
     )
-    crop_min_m: Point = quantity(
-        ..., "Lower corner of the box that holds the object.", unit="m", source=_CELL
-    )
-    crop_max_m: Point = quantity(
-        ..., "Upper corner of the box that holds the object.", unit="m", source=_CELL
-    )
+    crop_min_m: Point = quantity(..., "Lower corner of the box that holds the object.", unit="m", source=CELL)
+    crop_max_m: Point = quantity(..., "Upper corner of the box that holds the object.", unit="m", source=CELL)
     cup_station_m: Point = quantity(
-        ..., "Middle of the standing cup's foot at its station.", unit="m", source=_CELL
+        ..., "Middle of the standing cup's foot at its station.", unit="m", source=CELL
     )
 
     @model_validator(mode="after")
@@ -270,7 +195,7 @@ class ScanSettings(Group):
         min_length=1,
         max_length=200,
         description="Joint configurations of the views, in their order.",
-        json_schema_extra={"unit": "rad", "source": _CELL},
+        json_schema_extra={"unit": "rad", "source": CELL},
     )
     highest_object_m: float = quantity(
         0.42, "Planned views: no object rises higher above the platform.",
@@ -333,7 +258,7 @@ class SimulationSettings(Group):
 class CellSettings(Group):
     """A cell as its file describes it."""
 
-    name: str = choice(..., "What people call it.", source=_CELL)
+    name: str = choice(..., "What people call it.", source=CELL)
     camera: CameraSettings
     robot: RobotSettings
     gripper: GripperSettings = GripperSettings()
@@ -344,7 +269,7 @@ class CellSettings(Group):
     simulation: SimulationSettings = SimulationSettings()
     is_rehearsal: bool = declaration(
         "The arm at the address is driven while a simulated camera sees an object that is not there.",
-        source=_CELL,
+        source=CELL,
     )
 
     @property
@@ -367,6 +292,8 @@ class CellSettings(Group):
     def _devices_fit(self) -> CellSettings:
         if (self.camera.kind == "replay") != (self.robot.kind == "replay"):
             raise ValueError("camera and robot must both be of kind 'replay', or neither")
+        if self.gripper.kind == "robotiq" and self.robot.kind == "replay":
+            raise ValueError('a recorded scan has no gripper; leave out kind = "robotiq"')
         if self.is_rehearsal != (self.has_simulated_object and self.robot.is_real):
             raise ValueError(
                 "a simulated camera sees nothing from a real robot; set robot.kind to 'simulated', or "

@@ -26,6 +26,10 @@ class SimulatedGripper:
         """Whether it was last commanded to close."""
         return self._is_closed
 
+    @property
+    def is_holding(self) -> None:
+        """It reports nothing of that."""
+
     def close(self) -> None:
         """Close."""
         self._is_closed = True

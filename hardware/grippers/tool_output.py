@@ -42,6 +42,10 @@ class ToolOutputGripper:
         """
         return self._robot.state().tool_outputs[self._output]
 
+    @property
+    def is_holding(self) -> None:
+        """It reports nothing of that."""
+
     def close(self) -> None:
         """Close it and return when it had the time to.
 

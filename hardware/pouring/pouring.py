@@ -25,7 +25,7 @@ from core.session import explained
 from core.session.pour_runs import next_run_folder, pour_runs, unfinished_run
 from hardware.cell import Arm
 from hardware.driving import SAME_PLACE_RAD, WatchedArm, outermost
-from hardware.errors import DeviceError, OutputChanged, RobotError, RobotStopped, TrackingLost
+from hardware.errors import DeviceError, ObjectLost, OutputChanged, RobotError, RobotStopped, TrackingLost
 from hardware.interfaces import Robot, RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
@@ -157,7 +157,8 @@ class Pouring:
         plan, moves, index = self._interrupted
         joints_rad = self._arm.robot.state().joints_rad
         back = plan_back_off(plan, moves, index, joints_rad)
-        if not self._arm.gripper.is_closed:
+        gripper = self._arm.gripper
+        if not gripper.is_closed or gripper.is_holding is False:
             back = tuple(replace(move, holds_cup=False) for move in back)  # it let go
         check_rejoining(self._cell, self._target, back)
         return back
@@ -325,6 +326,7 @@ class PourProcedure:
             self._reporter.progress(STAGE, self._done_s + progress * duration_s, self._total_s)
 
         self._refuse_empty_hand(move)
+        self._refuse_lost_cup(move)
         self._watched.follow(move.trajectory, move.name, move.label, margin.path, watch)
         self._done_s += duration_s
         if move.gripper_after is not None:
@@ -343,6 +345,14 @@ class PourProcedure:
                 "see to the cup, the cable and the 24 V supply."
             )
 
+    def _refuse_lost_cup(self, move: PlannedMove) -> None:
+        """While the arm moves, its driver watches a gripper that tells what it holds."""
+        if move.holds_cup and self._arm.gripper.is_holding is False:
+            raise ObjectLost(
+                f"The {self._arm.gripper.name} holds nothing where it should hold the cup, so the arm stays "
+                "where it is; see to the cup and what it lost."
+            )
+
     def _grip(self, is_closing: bool) -> None:
         gripper = self._arm.gripper
         if is_closing:
@@ -354,4 +364,11 @@ class PourProcedure:
             raise DeviceError(
                 f"The {gripper.name} did not confirm that it {done}; check its cable and its 24 V supply."
             )
-        self._log.event("gripper", f"The gripper {done}.", is_closed=is_closing)
+        is_holding = gripper.is_holding
+        if is_closing and is_holding is False:
+            raise ObjectLost(
+                f"The {gripper.name} closed and holds nothing, so the cup is not lifted; see whether it "
+                "stands at its station."
+            )
+        held = " and holds the cup" if is_holding else ""
+        self._log.event("gripper", f"The gripper {done}{held}.", is_closed=is_closing, is_holding=is_holding)

@@ -12,6 +12,7 @@ from core.geometry import AnyArray
 from core.motion.arm_models import ArmModel
 from core.motion.kinematics import flange_pose
 from hardware.errors import RobotError
+from hardware.grippers.robotiq_line import RobotiqAddress
 from hardware.interfaces import RobotState
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.pose_vectors import pose_from_vector
@@ -27,6 +28,8 @@ class Setup:
         payload_kg: mass at the flange.
         payload_center_m: (3) its centre, in the flange's frame.
         cycle_s: time between two of the controller's states.
+        robotiq: where a gripper is served that tells whether it holds something; none: there is none.
+        is_held: whether it does now, so that it is watched.
     """
 
     address: str
@@ -34,6 +37,8 @@ class Setup:
     payload_kg: float
     payload_center_m: list[float]
     cycle_s: float
+    robotiq: RobotiqAddress | None = None
+    is_held: bool = False
 
 
 @dataclass(frozen=True)

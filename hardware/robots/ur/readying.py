@@ -11,6 +11,7 @@ import numpy as np
 from core.geometry import AnyArray, FloatArray
 from core.motion.arm_models import ArmModel
 from hardware.errors import ProgramStopped, RobotError, RobotNotReady
+from hardware.grippers.robotiq_line import RobotiqAddress, activate, holds_object, is_activated
 from hardware.interfaces import ReadyStep
 from hardware.modes import RobotMode, SafetyMode
 from hardware.robots.ur.checks import raise_if, refuse_other_kinematics, unsafe
@@ -32,13 +33,23 @@ class Tool:
         voltage_v: supply of its connector; none: as set on the panel.
         tolerances: how far the reported tool may be from where the model's kinematics put it, in metres,
             and how far turned, in radians.
+        robotiq: where a gripper is served that reports what it holds; none: an output, or nothing, is there.
     """
 
     voltage_v: int | None
     tolerances: tuple[float, float]
+    robotiq: RobotiqAddress | None = None
+
+    def holds(self, seen: Glance) -> bool:
+        """Whether the hand holds something, as far as that is reported: an output that is on may.
+
+        Raises:
+            GripperError: the gripper does not answer.
+        """
+        return any(seen.tool_outputs) if self.robotiq is None else holds_object(self.robotiq)
 
 
-def next_step(dashboard: Dashboard, seen: Glance, name: str) -> tuple[ReadyStep, str] | None:
+def next_step(dashboard: Dashboard, seen: Glance, tool: Tool, name: str) -> tuple[ReadyStep, str] | None:
     """Return what has to be done first, and a sentence on what it is for; none if nothing is in the way."""
     program = dashboard.program()
     if program is not None:
@@ -63,10 +74,15 @@ def next_step(dashboard: Dashboard, seen: Glance, name: str) -> tuple[ReadyStep,
             + ("its brakes are released" if is_on else "its power is switched on")
             + " when nobody is near."
         )
+    if tool.robotiq is not None and not is_activated(tool.robotiq):
+        return ReadyStep.ACTIVATE_GRIPPER, (
+            f"The gripper of the {name} is not activated; its fingers open and close once then, so nothing "
+            "must be in the hand, and no finger near it."
+        )
     return None
 
 
-def take_step(dashboard: Dashboard, step: ReadyStep, name: str) -> None:
+def take_step(dashboard: Dashboard, step: ReadyStep, tool: Tool, name: str) -> None:
     """Do what has to be done; the arm does not move along any path.
 
     Raises:
@@ -78,6 +94,9 @@ def take_step(dashboard: Dashboard, step: ReadyStep, name: str) -> None:
         restart_safety(dashboard, name)
     elif step is ReadyStep.UNLOCK:
         unlock(dashboard, name)
+    elif step is ReadyStep.ACTIVATE_GRIPPER:
+        assert tool.robotiq is not None, "only such a gripper asks for it"
+        activate(tool.robotiq)
     else:
         switch_on(dashboard, name, has_brakes_released=step is ReadyStep.RELEASE_BRAKES)
 

@@ -24,6 +24,7 @@ from hardware.errors import (
     RobotLost,
     RobotStopped,
 )
+from hardware.grippers.robotiq_line import RobotiqAddress
 from hardware.interfaces import Kinematics, ReadyStep, RobotState
 from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
@@ -79,6 +80,7 @@ class UR5Robot:
         name: model and address, or as given.
         controller_version: of the controller's software, such as (3, 15); empty before it was connected.
         kinematics: of the arm that was connected last, or looked at; as published before.
+        robotiq: where a gripper is served whose grip is watched; none: there is none.
     """
 
     def __init__(
@@ -93,6 +95,7 @@ class UR5Robot:
         tolerance_rad: float = radians(1),
         name: str | None = None,
         cup_kg: float = 0.0,
+        robotiq: RobotiqAddress | None = None,
     ) -> None:
         """Know what to connect to; entering connects.
 
@@ -106,14 +109,16 @@ class UR5Robot:
             tolerance_m: how far the reported tool may be from where the model's kinematics put it.
             tolerance_rad: how far it may be turned.
             name: what people call it; model and address without one.
-            cup_kg: of the payload; not there as long as no tool output is on.
+            cup_kg: of the payload; not there as long as the hand is empty.
+            robotiq: see above.
         """
         self.name = name or f"{arm.name} at {address}"
         self.controller_version: tuple[int, ...] = ()
         self._arm = arm
         self.kinematics = Kinematics(arm)
         self._T_flange_tool = T_flange_tool
-        self._tool = Tool(tool_voltage_v, (tolerance_m, tolerance_rad))
+        self.robotiq = robotiq
+        self._tool = Tool(tool_voltage_v, (tolerance_m, tolerance_rad), robotiq)
         self._address = address
         self._payload_kg = (float(payload_kg - cup_kg), float(payload_kg))
         self._payload_center_m = [float(x) for x in payload_center_m]
@@ -224,7 +229,7 @@ class UR5Robot:
     def pending_step(self) -> tuple[ReadyStep, str] | None:
         """What has to be done before it can be connected, and why; none if that is nothing or not known."""
         with suppress(RobotError), Dashboard(self._address) as dashboard:
-            return next_step(dashboard, self._look(dashboard), self.name)
+            return next_step(dashboard, self._look(dashboard), self._tool, self.name)
         return None
 
     def take_step(self, step: ReadyStep) -> None:
@@ -234,7 +239,7 @@ class UR5Robot:
             RobotError: it could not be done; the sentence says what a person has to do.
         """
         with Dashboard(self._address) as dashboard:
-            take_step(dashboard, step, self.name)
+            take_step(dashboard, step, self._tool, self.name)
 
     def recover(self) -> None:
         """Bring the robot back to where it takes moves, with a new worker; nothing goes on.
@@ -268,11 +273,12 @@ class UR5Robot:
         switch_tool_output(self._connected().worker, self.name, output, value)
 
     def set_held(self, is_held: bool) -> None:
-        """Tell the controller whether the hand carries the cup, where the cell file says what it weighs.
+        """Tell the controller whether the hand carries the cup, as far as its mass is known; watch the grip.
 
         Raises:
             RobotError: the controller does not take it.
         """
+        self._connected().worker.ask("watch_held", is_held)
         if self._payload_kg[0] != self._payload_kg[1]:
             self._connected().worker.ask("set_payload", self._payload_kg[is_held])
 
@@ -300,19 +306,21 @@ class UR5Robot:
                 set_tool_voltage(self._address, self._tool.voltage_v)
             self.controller_version = dashboard.version()
             cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
+            is_held = self._tool.holds(seen)
             setup = Setup(
                 self._address,
                 vector_from_pose(self._T_flange_tool).tolist(),
-                self._payload_kg[any(seen.tool_outputs)],
+                self._payload_kg[is_held],
                 self._payload_center_m,
                 cycle_s,
+                self._tool.robotiq,
+                is_held,
             )
             worker = WorkerLink(setup, self._on_ended, self._on_lost)
             try:
                 raw = worker.state()
-                joints_rad, tool_pose = raw["joints_rad"], raw["tool_pose"]
-                T_tool, tolerances = self._T_flange_tool, self._tool.tolerances
-                refuse_other_kinematics(joints_rad, tool_pose, self.kinematics.model, T_tool, tolerances)
+                reported, T_tool = (raw["joints_rad"], raw["tool_pose"]), self._T_flange_tool
+                refuse_other_kinematics(*reported, self.kinematics.model, T_tool, self._tool.tolerances)
             except BaseException:
                 worker.end()
                 raise

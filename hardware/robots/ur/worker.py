@@ -39,6 +39,7 @@ from hardware.errors import (
 from hardware.realtime import take_precedence
 from hardware.robots.ur.checks import deviation, moved_at_rest, output_changed, raise_if, unsafe
 from hardware.robots.ur.heartbeat import Heartbeat
+from hardware.robots.ur.held_object import HeldObject
 from hardware.robots.ur.messages import (
     FIELDS,
     RUNTIME_PLAYING,
@@ -108,6 +109,8 @@ class _Worker:
         self._is_over = False
         self._refusal = "The arm was stopped; recover the robot first."
         self._program = Heartbeat(pulse, os.getppid())
+        self._held = None if setup.robotiq is None else HeldObject(setup.robotiq)
+        self._ask_watch_held(setup.is_held)
         self._due_s = float("inf")
         self._fresh = Event()
         self._kicked_s = 0.0
@@ -211,6 +214,10 @@ class _Worker:
         self._outputs = (value, self._outputs[1]) if output == 0 else (self._outputs[0], value)
         self._switched.add(output)
 
+    def _ask_watch_held(self, is_held: bool) -> None:
+        if self._held is not None:
+            self._held.watch(is_held)
+
     def _begin(self, motion: Motion) -> None:
         if self._is_over:
             raise MoveRefused(self._refusal)
@@ -218,6 +225,7 @@ class _Worker:
             raise MoveRefused("The arm is still moving; stop it or wait until it stops.")
         self._outputs = tool_outputs(self._latest)
         self._switched.clear()
+        raise_if(self._lost_object())
         self._motion, self._rest_rad = motion, None
 
     def _stop(self, request: Request) -> None:
@@ -239,6 +247,7 @@ class _Worker:
         if not motion.is_streaming or motion.progress >= 1:
             self._due_s = time.monotonic() + _HANDSHAKE_S
         try:
+            raise_if(self._lost_object())
             self._watch_outputs()
             is_done = motion.step(self._latest)
             if motion.is_streaming:
@@ -276,6 +285,9 @@ class _Worker:
 
     def _report_rest(self, error: RobotError) -> None:
         self._send(Ended(self._reason(error), 0.0))
+
+    def _lost_object(self) -> RobotError | None:
+        return None if self._held is None else self._held.problem()
 
     def _watch_outputs(self) -> None:
         """What we switched ourselves is watched from the state on that shows it.

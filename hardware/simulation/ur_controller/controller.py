@@ -16,6 +16,7 @@ from hardware.simulation.ur_controller.journal import Journal
 from hardware.simulation.ur_controller.motions import NoSolution
 from hardware.simulation.ur_controller.program import ControlProgram
 from hardware.simulation.ur_controller.registers import Registers
+from hardware.simulation.ur_controller.robotiq import RobotiqHand
 
 CONTROL_SCRIPT_MARK = "def rtde_control():"
 _SWITCHING_S = 1.0
@@ -58,6 +59,7 @@ class Controller:
         has_dual_pin_power: whether the tool's outputs are its power supply (e-Series).
         is_frozen: whether nothing happens any more, for now.
         digital_outputs: bits; 16 and 17 are the tool's.
+        hand: a Robotiq gripper; none: there is none.
     """
 
     def __init__(self, identity: Identity, joints_rad: npt.ArrayLike) -> None:
@@ -81,6 +83,7 @@ class Controller:
         self.has_dual_pin_power = False
         self.is_frozen = False
         self.digital_outputs = 0
+        self.hand: RobotiqHand | None = None
         self._cycles = 0
         self._program: ControlProgram | ForeignProgram | None = None
         self._stopped_until_s = 0.0
@@ -101,6 +104,8 @@ class Controller:
             elif self._program is not None and self.runtime_state is RuntimeState.PLAYING:
                 self._program.step()
             self.arm.step(self.dt_s)
+            if self.hand is not None:
+                self.hand.step(self.dt_s)
         except NoSolution as error:
             self.journal.note("script error", message=str(error))
             self._end_program()

@@ -24,8 +24,12 @@
 | `limit JOINT LOW HIGH`, `no limits` | the safety system's, in rad; as the arm's own |
 | `force N` | something pushes at the tool |
 | `dashboard delay SECONDS` | the dashboard hears every line so late |
+| `hand empty`, `hand full` | nothing (any more) between a Robotiq gripper's fingers; something |
+| `hand silent`, `hand senseless`, `hand sane` | it answers nothing; something else; as it should |
+| `hand off`, `hand fault NUMBER` | it is not activated any more; what it reports |
 | `link drop [SECONDS]` | every connection is closed; new ones are refused that long |
-| `drop dashboard`, `drop script`, `drop rtde [NUMBER]` | these connections are closed, of many the nth |
+| `drop dashboard`, `drop script`, `drop robotiq` | these connections are closed |
+| `drop rtde [NUMBER]` | these, or the nth of them |
 | `link silent [SECONDS]` | everything stays open, nothing passes; for ever without a time |
 | `latency MS [JITTER_MS]` | on everything, in each direction |
 | `refuse [SECONDS]` | new connections are refused |
@@ -50,6 +54,7 @@ import numpy as np
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.identity import MODELS
 from hardware.simulation.ur_controller.link import Network
+from hardware.simulation.ur_controller.robotiq import OBJECT_M, RobotiqHand
 
 _KILLED = 9
 _NEWEST = 200
@@ -104,6 +109,13 @@ class FaultInjector:
             "output lost": c.lose_outputs,
             "ignore outputs": lambda: setattr(c, "ignores_outputs", True),
             "heed outputs": lambda: setattr(c, "ignores_outputs", False),
+            "hand empty": lambda: setattr(self._hand, "object_m", None),
+            "hand full": lambda: setattr(self._hand, "object_m", OBJECT_M),
+            "hand silent": lambda: setattr(self._hand, "is_silent", True),
+            "hand senseless": lambda: setattr(self._hand, "is_senseless", True),
+            "hand sane": self._mend_hand,
+            "hand off": lambda: self._hand.deactivate(),
+            "drop robotiq": lambda: network.drop("robotiq"),
             "take registers": lambda: c.registers.take_all(_OTHER_CLIENT),
             "release registers": lambda: c.registers.release(_OTHER_CLIENT),
             "unstick": c.arm.stuck.clear,
@@ -121,6 +133,7 @@ class FaultInjector:
             "jump": self._jump,
             "limit": self._limit,
             "force": lambda numbers: setattr(c, "tool_force_n", _one(numbers)),
+            "hand fault": lambda numbers: setattr(self._hand, "fault", int(_one(numbers))),
             "pace": self._pace,
             "dashboard delay": lambda numbers: setattr(c, "dashboard_delay_s", _one(numbers)),
             "drop rtde": self._drop_rtde,
@@ -171,6 +184,16 @@ class FaultInjector:
             "connections": sorted(link.name for link in self._network.links),
             "counts": dict(c.journal.counts),
         }
+
+    @property
+    def _hand(self) -> RobotiqHand:
+        if self._controller.hand is None:
+            raise FaultRefused("there is no Robotiq gripper here")
+        return self._controller.hand
+
+    def _mend_hand(self) -> None:
+        self._hand.is_silent = self._hand.is_senseless = False
+        self._hand.fault = 0
 
     def _find(self, words: list[str]) -> Callable[[], None]:
         """Return what a line means."""

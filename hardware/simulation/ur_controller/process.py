@@ -39,6 +39,7 @@ class ControllerProcess:
         joints_rad: Sequence[float] = HOME_RAD,
         speed_up: float = 1.0,
         faults: Sequence[str] = (),
+        robotiq: str | None = None,
     ) -> None:
         """Choose a controller; entering the context starts it.
 
@@ -49,13 +50,14 @@ class ControllerProcess:
             joints_rad: (6,) where the arm is at first, powered on and with its brakes released.
             speed_up: how many times faster than the wall clock its clock, motion and cycles run.
             faults: lines as for `command`, taken at the start.
+            robotiq: model of a Robotiq gripper that is served beside it; none: there is none.
 
         Raises:
             InputError: an unknown model, or a version that is none.
         """
         self.address = address or ""
         self._settings = ControllerSettings(
-            identity(model, version), address, tuple(joints_rad), speed_up, tuple(faults)
+            identity(model, version), address, tuple(joints_rad), speed_up, tuple(faults), robotiq
         )
         self._process: ChildProcess | None = None
         self._socket: socket.socket | None = None

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from ipaddress import ip_address
 
 from core.errors import InputError
+from hardware.grippers.robotiq_line import ROBOTIQ_PORT
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.faults import FaultInjector, FaultRefused
 from hardware.simulation.ur_controller.identity import (
@@ -23,6 +24,7 @@ from hardware.simulation.ur_controller.identity import (
 )
 from hardware.simulation.ur_controller.link import Network
 from hardware.simulation.ur_controller.primary_server import PrimaryLink
+from hardware.simulation.ur_controller.robotiq import RobotiqHand, RobotiqLink
 from hardware.simulation.ur_controller.rtde_server import Outputs, RtdeLink
 from hardware.simulation.ur_controller.text_servers import ControlLink, DashboardLink, ScriptLink
 
@@ -42,6 +44,7 @@ class ControllerSettings:
         joints_rad: (6,) where the arm is at first.
         speed_up: how many times faster than the wall clock the controller's clock runs.
         faults: lines for the fault injector, taken at the start.
+        robotiq: model of the Robotiq gripper that is served; none: there is none.
     """
 
     identity: Identity
@@ -49,6 +52,7 @@ class ControllerSettings:
     joints_rad: Sequence[float] = HOME_RAD
     speed_up: float = 1.0
     faults: Sequence[str] = ()
+    robotiq: str | None = None
 
 
 class ControllerServer:
@@ -59,6 +63,8 @@ class ControllerServer:
         self._settings = settings
         self._controller = Controller(settings.identity, settings.joints_rad)
         self._controller.speed_up = settings.speed_up
+        if settings.robotiq is not None:
+            self._controller.hand = RobotiqHand(settings.robotiq)
         self._outputs = Outputs(self._controller)
         self._network = Network()
         self._injector = FaultInjector(self._controller, self._network, self._refuse)
@@ -120,6 +126,9 @@ class ControllerServer:
             (lambda: ScriptLink(self._network, self._controller), SCRIPT_PORT),
             (lambda: RtdeLink(self._network, self._controller), RTDE_PORT),
         ]
+        hand = self._controller.hand
+        if hand is not None:
+            makers.append((lambda: RobotiqLink(self._network, hand, self._controller.journal), ROBOTIQ_PORT))
         try:
             for make, port in makers:
                 self._servers.append(await self._server(make, port))

@@ -16,8 +16,11 @@ REAL = read_cell(SIMULATED_CELL.with_name("ur5_example.toml"))
 
 def with_kind(settings: CellSettings, device: str, kind: str) -> CellSettings:
     """A cell whose device is of another kind, with what the file would have to say about it, unchecked."""
-    more: dict[str, Any] = {"intrinsics": (525.0, 525.0, 320.0, 240.0), "recording": SIMULATED_CELL.parent}
-    changed = {"kind": kind, **(more if device == "camera" else {})}
+    more: dict[str, Any] = {
+        "camera": {"intrinsics": (525.0, 525.0, 320.0, 240.0), "recording": SIMULATED_CELL.parent},
+        "gripper": {"model": "Hand-E"} if kind == "robotiq" else {},
+    }
+    changed = {"kind": kind, **more.get(device, {})}
     return settings.model_copy(update={device: getattr(settings, device).model_copy(update=changed)})
 
 
@@ -42,8 +45,9 @@ def test_every_kind_of_robot_takes_part_in_a_scan(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", kinds("gripper"))
 def test_every_kind_of_gripper_is_opened_as_itself(kind: str) -> None:
-    name = {"simulated": "simulated", "ur5": "tool output"}[kind]
-    assert name in real_gripper(with_kind(REAL, "gripper", kind), ur_robot(REAL)).name
+    name = {"simulated": "simulated", "ur5": "tool output", "robotiq": "Robotiq Hand-E at 192"}[kind]
+    settings = with_kind(REAL, "gripper", kind)
+    assert name in real_gripper(settings, ur_robot(settings)).name
 
 
 @pytest.mark.parametrize("device", ["camera", "robot", "gripper"])

@@ -85,6 +85,27 @@ FAULTS = {
     "a word for a number": ("table_height_m = 0.015", 'table_height_m = "low"', "place.table_height_m"),
     "a camera without thickness": ("0.18, 0.036, 0.025", "0.18, 0.036, -0.025", "camera.size_m"),
     "no speed": ("joint_speed_rad_s = 0.8", "joint_speed_rad_s = 0", "robot.joint_speed_rad_s"),
+    "a robotiq gripper without model": (
+        '[gripper]\nkind = "simulated"',
+        '[gripper]\nkind = "robotiq"',
+        "needs 'model'",
+    ),
+    "a robotiq gripper that opens wider than it can": (
+        '[gripper]\nkind = "simulated"',
+        '[gripper]\nkind = "robotiq"\nmodel = "Hand-E"\nopen_width_m = 0.06',
+        "opens to 0.05 m and no wider",
+    ),
+    "a robotiq gripper that closes no further": (
+        '[gripper]\nkind = "simulated"',
+        '[gripper]\nkind = "robotiq"\nmodel = "2F-85"\nopen_width_m = 0.05\nclosed_width_m = 0.05',
+        "closed_width_m must be less",
+    ),
+    "an unknown robotiq gripper": (
+        '[gripper]\nkind = "simulated"',
+        '[gripper]\nkind = "robotiq"\nmodel = "3F"',
+        "gripper.model",
+    ),
+    "a model of another gripper": ("[gripper]", '[gripper]\nmodel = "2F-85"', "said of a robotiq gripper"),
     "no tries": ("tries = 3", "tries = 0", "scan.tries"),
 }
 

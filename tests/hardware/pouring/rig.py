@@ -66,9 +66,14 @@ class Rig:
     session: Path
     speed_up: float = 6.0
     version: str = "3.15"
+    robotiq: str | None = None
 
     def __enter__(self) -> Rig:
         self.settings = quick_cell(self.speed_up, self.version)
+        if self.robotiq is not None:
+            hand = {"kind": "robotiq", "model": self.robotiq}
+            gripper = self.settings.gripper.model_copy(update=hand)
+            self.settings = self.settings.model_copy(update={"gripper": gripper})
         self.arm = open_arm(self.settings)
         self.arm.__enter__()
         self.controller = self.arm.controller
