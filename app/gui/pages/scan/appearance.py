@@ -92,7 +92,10 @@ class AppearanceRow(QWidget):
         self._switch = QCheckBox(self.tr("Appearance"))
         self._switch.setObjectName("appearance")
         self._switch.setToolTip(
-            self.tr("What a network that sees colours alone takes for a hollow, in green; nothing goes by it")
+            self.tr(
+                "What a network that sees colours alone takes for a hollow, in green. For comparison only: it "
+                "is right about three views of four, and nothing goes by it."
+            )
         )
         self._said = text_label("appearance_said", "muted")
         column = QVBoxLayout(self)
