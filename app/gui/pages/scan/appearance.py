@@ -93,8 +93,8 @@ class AppearanceRow(QWidget):
         self._switch.setObjectName("appearance")
         self._switch.setToolTip(
             self.tr(
-                "What a network that sees colours alone takes for a hollow, in green. For comparison only: it "
-                "is right about three views of four, and nothing goes by it."
+                "What a network that sees colours alone takes for a hollow, in green. For comparison only: "
+                "it is right about three views of four, and nothing goes by it."
             )
         )
         self._said = text_label("appearance_said", "muted")
