@@ -102,6 +102,8 @@ def variants_of(names: Sequence[str], *, has_images: bool = True) -> tuple[Varia
         (name for name in names if name != "all" and VARIANTS[name].by_looks and not has_images), None
     )
     if blind is not None:
-        raise InputError(f"The variant '{blind}' judges images, which only '--input scan' takes.")
+        raise InputError(
+            f"The variant '{blind}' judges images, and meshes have none; let the objects be scanned."
+        )
     chosen = (one for name, one in VARIANTS.items() if name in names or "all" in names)
     return tuple(one for one in chosen if has_images or not one.by_looks)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, cast
 
 from typing_extensions import override
 
@@ -45,6 +45,11 @@ class BackgroundPage(Page, Generic[Key, Content]):
         self._part_keys: dict[str, object] = {}
         for signal in (desk.jobs.started, desk.jobs.finished, desk.jobs.failed):
             signal.connect(lambda *_: self._outdate_actions())
+
+    @property
+    def shown_key(self) -> Key | None:
+        """What `content` was read for, or is being read for."""
+        return cast("Key | None", self._part_keys.get(_CONTENT))
 
     def content_key(self) -> Key | None:
         """Return what has to be read now, found without reading files; none if there is nothing to show.

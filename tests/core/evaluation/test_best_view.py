@@ -102,7 +102,7 @@ def test_cards_say_what_was_seen():
 
 
 def test_without_images_nothing_is_judged_by_looks():
-    with pytest.raises(InputError, match="'appearance' judges images, which only '--input scan' takes"):
+    with pytest.raises(InputError, match="'appearance' judges images, and meshes have none"):
         variants_of(["imagination", "appearance"], has_images=False)
     blind = variants_of(["all"], has_images=False)
     assert [one.name for one in blind] == [name for name, one in VARIANTS.items() if not one.by_looks]

@@ -74,7 +74,8 @@ def test_one_seed_one_scan_whatever_other_views_it_has(
 ) -> None:
     chosen = (11, 4, 20)
     views = tuple(CELL.scan.views_rad[k] for k in chosen)
-    few = CELL.model_copy(update={"scan": CELL.scan.model_copy(update={"views_rad": views})})
+    only_these = {"views_rad": views, "look_inside": False}
+    few = CELL.model_copy(update={"scan": CELL.scan.model_copy(update=only_these)})
     monkeypatch.setattr(simulated, "read_cell", lambda: few)
     again = simulate_scan(builtin_object("mug"), 3, Reporter())
     for k, frame in zip(chosen, again.frames, strict=True):

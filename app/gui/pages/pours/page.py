@@ -114,8 +114,10 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
     @override
     def content_key(self) -> PoursKey | None:
         folder = self.desk.workspace.folder
-        if folder is None or not self.desk.workspace.has("pouring") or self._is_half_done:
+        if folder is None or not self.desk.workspace.has("pouring"):
             return None
+        if self._is_half_done:
+            return self.shown_key  # the pours before stay until one of the new ones is chosen
         return PoursKey(folder, self.desk.cell.settings, self.content)
 
     @property
