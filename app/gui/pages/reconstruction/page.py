@@ -101,7 +101,7 @@ class ReconstructionPage(BackgroundPage[ModelKey, Loaded]):
         )
 
     def _take_difference(self, model: ShownModel, difference_m: Any) -> None:
-        if model is not self.model:
+        if self.model is None or model.digest != self.model.digest:  # it may have been read again meanwhile
             return
         self._difference_m = difference_m
         self._show()
