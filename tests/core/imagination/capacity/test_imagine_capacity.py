@@ -88,6 +88,11 @@ def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few)
 
 @pytest.mark.system
 def test_candies_that_only_arch_over_an_opening_are_not_held(candies, few):
-    arched = fill(CollisionModel.exact(funnel(0.022)), candies, few, RunHere())
-    assert arched.explanation == ARCH
-    assert arched.n_candies == 0
+    model = CollisionModel.exact(funnel(0.022))
+    for seed in range(3, 10):  # with which seed they arch depends on the processor's rounding
+        arched = fill(model, candies.model_copy(update={"seed": seed}), few, RunHere())
+        assert arched.n_candies == 0
+        if arched.explanation == ARCH:
+            return
+        assert not arched.explanation, "or nothing stayed at all"
+    pytest.fail("they never arched: nothing was tested")
