@@ -45,7 +45,7 @@ def with_views(settings, which):
 
 
 def with_joints(settings, views_rad):
-    scan = settings.scan.model_copy(update={"views_rad": tuple(views_rad)})
+    scan = settings.scan.model_copy(update={"views_rad": tuple(views_rad), "look_inside": False})
     return settings.model_copy(update={"scan": scan})
 
 
