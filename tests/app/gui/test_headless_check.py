@@ -15,7 +15,7 @@ from tests.patience import HANG_S
 
 LONGEST_STALL_MS = 100
 MOST_TRIES = 3
-"""Whatever else the machine does can only lengthen a stall; one undisturbed run shows the program's own."""
+"""A busy machine may lengthen a stall also where nothing waits for a processor: threads wait for others."""
 STALL_S = 0.3
 
 
@@ -75,7 +75,7 @@ def test_a_newcomer_pours_into_the_mug_the_window_never_stalls_and_nothing_is_le
             print(f"\n{printed}")
         assert "0 of 60 candies were spilled" in printed
         assert " 6 clicks" in printed, "'Scan the mug' and five more"
-        stalls_ms.append(float(printed.split("longest stall was ")[1].split(" ms")[0]))
+        stalls_ms.append(float(printed.split(" ms without what it waited")[0].split()[-1]))
     assert min(stalls_ms) < LONGEST_STALL_MS
     left = [
         process
