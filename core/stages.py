@@ -96,7 +96,7 @@ STAGES: tuple[Stage, ...] = (
     Stage(
         "judgement",
         ("collision", "containability"),
-        (*_PARTICLES, *_BODY, *_RECORDING, "containability", "capacity", "holding"),
+        (*_PARTICLES, *_BODY, *_RECORDING, "containability", "capacity"),
     ),
     Stage(
         "amount",
@@ -116,6 +116,19 @@ STAGES: tuple[Stage, ...] = (
         (*_PARTICLES, *_BODY, *_RECORDING, *_POUR),
     ),
     Stage("risk", (SURFACE, "collision", "pouring"), (*_PARTICLES, *_BODY, *_RECORDING, *_POUR, "risk")),
+    # Neither verdict nor pours wait for it.
+    Stage(
+        "retention",
+        ("collision", "containability"),
+        (
+            *_PARTICLES,
+            *_BODY,
+            "containability",
+            "-containability.capacity_threshold",
+            "-containability.omega_threshold",
+            "holding",
+        ),
+    ),
     Stage(
         "motion",
         (SURFACE, "collision", "containability", "pouring", "risk"),

@@ -54,6 +54,7 @@ _SPECS: Mapping[tuple[str, str], _Spec] = {
     ("containability", "holding.npz"): _HOLDING,
     ("judgement", "capacity.npz"): _CAPACITY,
     ("judgement", "holding.npz"): _HOLDING,
+    ("retention", "holding.npz"): _HOLDING,
     ("collision", "collision.npz"): _COLLISION,
     ("mesh", "collision.npz"): _COLLISION,
     ("quality", "quality.npz"): _QUALITY,

@@ -45,6 +45,7 @@ _TABLES: Mapping[tuple[str, str], type] = {
     ("judgement", "judgement.json"): Judgement,
     ("judgement", "capacity.json"): Capacity,
     ("judgement", "holding.json"): Holding,
+    ("retention", "holding.json"): Holding,
     ("amount", "amount.json"): PlannedAmount,
     ("pouring", "amount.json"): Amount,
     ("pouring", "pours.json"): Pours,

@@ -144,8 +144,6 @@ class Verdict(TypedDict):
     threshold: FiniteFloat
     n_candies: FiniteFloat
     volume_ml: FiniteFloat
-    n_load: Count
-    holds_rad: FiniteFloat
     level_candies: NotRequired[FiniteFloat | None]
     level_ml: NotRequired[FiniteFloat | None]
     has_stand_ins: NotRequired[bool]

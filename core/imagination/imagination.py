@@ -25,7 +25,7 @@ class Imagination:
     Attributes:
         containability: the drop, with the verdict.
         capacity: what the object holds; none if Omega decides, or nothing stayed in the drop.
-        retention: how firmly; as `capacity`.
+        retention: how firmly; none if Omega decides, or nothing stayed in the drop.
         amount: how many candies shall go in, and whether they fit; as `capacity`.
         n_per_cup: candies in each cup to be poured.
         grid: the pours.
@@ -56,6 +56,7 @@ class Imagination:
         planned: PlannedAmount,
         grid: PourGrid | None,
         tries: Tries,
+        retention: Retention | None,
         *,
         cup: CupParameters,
         containability_s: float = 0.0,
@@ -65,7 +66,7 @@ class Imagination:
         return cls(
             judgement.of(drop),
             judgement.capacity,
-            judgement.retention,
+            retention,
             planned.amount,
             planned.n_per_cup,
             grid,

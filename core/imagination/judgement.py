@@ -1,4 +1,4 @@
-"""The verdict on an object: what it holds and how firmly (decision 0015), or Omega alone (Sec. III-A)."""
+"""The verdict on an object: by what it holds (decision 0015), or by Omega alone (Sec. III-A)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,10 @@ from core.collision import CollisionModel
 from core.files import read_json, write_json
 from core.imagination.capacity.basin import ML
 from core.imagination.capacity.imagine import imagine_capacity
-from core.imagination.capacity.result import Capacity
+from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
 from core.imagination.drop import imagine_drop
 from core.imagination.results import Containability, Drop
-from core.imagination.retention.imagine import imagine_retention
-from core.imagination.retention.result import RETENTION_FILE, Retention
 from core.imagination.verdict import Verdict
 from core.mesh import TriangleMesh
 from core.mesh_topology import hull_volume_m3
@@ -31,25 +29,22 @@ class Judgement:
         omega_threshold: Omega_thr that Omega is held against.
         verdict: by what the object holds; none if Omega decides.
         capacity: none if Omega decides, or nothing stayed in the drop.
-        retention: the same.
     """
 
     omega_threshold: float
     verdict: Verdict | None = None
     capacity: Capacity | None = None
-    retention: Retention | None = None
 
     def of(self, drop: Drop) -> Containability:
         """Return the drop that was judged, with the verdict."""
         return drop.judged(self.omega_threshold, self.verdict)
 
     def save(self, folder: Path) -> None:
-        """Write `judgement.json`, and the files of capacity and retention if these were imagined."""
+        """Write `judgement.json`, and the files of the capacity if it was imagined."""
         verdict = None if self.verdict is None else self.verdict.to_table()
         write_json(folder / JUDGEMENT_FILE, {"omega_threshold": self.omega_threshold, "verdict": verdict})
-        for found in (self.capacity, self.retention):
-            if found is not None:
-                found.save(folder)
+        if self.capacity is not None:
+            self.capacity.save(folder)
 
     @classmethod
     def load(cls, folder: Path) -> Judgement:
@@ -59,37 +54,33 @@ class Judgement:
     @classmethod
     def from_table(cls, table: dict[str, Any], folder: Path) -> Judgement:
         """Read a table with threshold and verdict, and the files beside it."""
-        verdict, is_filled = table.get("verdict"), (folder / RETENTION_FILE).is_file()
+        verdict, is_filled = table.get("verdict"), (folder / CAPACITY_FILE).is_file()
         return cls(
             table["omega_threshold"],
             None if verdict is None else Verdict.from_table(verdict),
             Capacity.load(folder) if is_filled else None,
-            Retention.load(folder) if is_filled else None,
         )
 
 
 def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Judgement:
-    """Find what an object holds and how firmly, if that decides and any candy stayed in the drop."""
+    """Find what an object holds, if that decides and any candy stayed in the drop."""
     settings = context.parameters.containability
     if settings.verdict == "omega":
         return Judgement(settings.omega_threshold)
     if drop.footprint is None:
-        nothing = Verdict(0.0, settings.capacity_threshold, 0.0, 0.0, 0, 0.0)
+        nothing = Verdict(0.0, settings.capacity_threshold, 0.0, 0.0)
         return Judgement(settings.omega_threshold, _read_otherwise(context, model, nothing))
     capacity = imagine_capacity(context, model, drop)
-    retention = imagine_retention(context, model, drop)
     verdict = Verdict(
         _share(model.surface, capacity),
         settings.capacity_threshold,
         capacity.n_candies,
         float(capacity.bulk_ml),
-        retention.n_load,
-        retention.holds_rad,
         capacity.n_level,
         capacity.volume_ml,
         capacity.stand_in_diameter_m is not None,
     )
-    return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity, retention)
+    return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity)
 
 
 def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
@@ -108,7 +99,7 @@ def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict:
 
 
 def capacity_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:
-    """Return the `capacity_share` of the verdict that `judge` reaches, without the retention."""
+    """Return the `capacity_share` of the verdict that `judge` reaches."""
     if drop.footprint is None:
         return 0.0
     return _share(model.surface, imagine_capacity(context, model, drop))

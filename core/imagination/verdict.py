@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+_TILTED = ("n_load", "holds_rad")
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -16,8 +18,6 @@ class Verdict:
         threshold: `capacity_share` above which it is an open container.
         n_candies: the same in candies.
         volume_ml: the same in ml.
-        n_load: candies it was tilted with.
-        holds_rad: tilt up to which none of them left, in the worst direction.
         level_candies: of `n_candies`, those below the rim; none in records of earlier versions.
         level_ml: what they take up in bulk, the volume of water that stands as high; none likewise.
         has_stand_ins: whether larger balls were filled in place of candies: what they heap is no heap of
@@ -30,8 +30,6 @@ class Verdict:
     threshold: float
     n_candies: float
     volume_ml: float
-    n_load: int
-    holds_rad: float
     level_candies: float | None = None
     level_ml: float | None = None
     has_stand_ins: bool = False
@@ -56,5 +54,5 @@ class Verdict:
 
     @classmethod
     def from_table(cls, table: dict[str, Any]) -> Verdict:
-        """Read what `to_table` gave."""
-        return cls(**table)
+        """Read what `to_table` gave, also that of earlier versions, which tilted the object first."""
+        return cls(**{name: value for name, value in table.items() if name not in _TILTED})

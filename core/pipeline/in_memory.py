@@ -54,7 +54,8 @@ class StageMemory:
     def imagination(self, parameters: Parameters) -> Imagination:
         """Return everything that is imagined with these parameters."""
         drop, judgement, planned, grid, tries = (self.result(name, parameters) for name in IMAGINED)
-        return Imagination.of(drop, judgement, planned, grid, tries, cup=parameters.pouring.cup)
+        retention = self.result("retention", parameters)
+        return Imagination.of(drop, judgement, planned, grid, tries, retention, cup=parameters.pouring.cup)
 
     def take_model(self, model: CollisionModel, parameters: Parameters) -> None:
         """Use a body that was built elsewhere, with the collision parameters of `parameters`."""

@@ -177,6 +177,7 @@ class Pipeline:
         """Imagine open containability and the pours (Sec. III-A, III-B)."""
         self._prepare_cup_runs()
         drop, judgement, planned, grid, tries = (self.result(name) for name in IMAGINED)
+        retention = self.result("retention")
         seconds = {name: self._record(name).seconds for name in IMAGINED}
         pouring_s = seconds["pouring"] + seconds["risk"]
         return Imagination.of(
@@ -185,6 +186,7 @@ class Pipeline:
             planned,
             grid,
             tries,
+            retention,
             cup=self.parameters.pouring.cup,
             containability_s=sum(seconds.values()) - pouring_s,
             pouring_s=pouring_s,

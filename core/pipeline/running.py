@@ -25,6 +25,8 @@ from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
 from core.imagination.rendering.shapes import cup_surface
 from core.imagination.results import POURS_FILE, Drop, PourGrid
+from core.imagination.retention.imagine import imagine_retention
+from core.imagination.retention.result import RETENTION_FILE, Retention
 from core.imagination.risk.drawing import with_camera_error, with_scan_error
 from core.imagination.risk.tries import Tries, imagine_risk, try_pours
 from core.motion.pour.cell import PourCell
@@ -173,6 +175,13 @@ def _judge(given: Given) -> Judgement:
     return judge(given.context, given.result("collision"), given.result("containability"))
 
 
+def _tilt(given: Given) -> Retention | None:
+    drop: Drop = given.result("containability")
+    if given.parameters.containability.verdict == "omega" or drop.footprint is None:
+        return None
+    return imagine_retention(given.context, given.result("collision"), drop)
+
+
 def _plan_amount(given: Given) -> PlannedAmount:
     return plan_amount(given.result("judgement").capacity, given.parameters)
 
@@ -263,6 +272,10 @@ def with_n_pour(parameters: Parameters, n_pour: int) -> Parameters:
     return parameters.model_copy(update={"pouring": pouring})
 
 
+def _load_retention(folder: Path) -> Retention | None:
+    return Retention.load(folder) if (folder / RETENTION_FILE).is_file() else None
+
+
 def _load_pours(folder: Path) -> PourGrid | None:
     return PourGrid.load(folder) if (folder / POURS_FILE).is_file() else None
 
@@ -278,6 +291,7 @@ RUNS: dict[str, StageRun] = {
     "amount": StageRun(_plan_amount, PlannedAmount.load),
     "pouring": StageRun(_pour, _load_pours),
     "risk": StageRun(_try_pours, Tries.load),
+    "retention": StageRun(_tilt, _load_retention),
     "motion": StageRun(_judge_motions, PourMotions.load),
     "evidence": StageRun(_render, Evidence.load),
 }

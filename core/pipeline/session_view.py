@@ -18,6 +18,7 @@ from core.imagination.amount.result import AMOUNT_FILE, Amount, PlannedAmount
 from core.imagination.choice import choose_pour
 from core.imagination.judgement import Judgement
 from core.imagination.results import DROP_FILE, POURS_FILE, Containability, Drop, PourChoice, PourGrid
+from core.imagination.retention.result import RETENTION_FILE, Retention
 from core.imagination.risk.tries import Tries
 from core.imagination.verdict import Verdict
 from core.motion.pour.feasibility import MOTION_FILE, PourMotions
@@ -178,13 +179,23 @@ class SessionView:
 
     @cached_property
     def judgement(self) -> Judgement | None:
-        """What followed from the drop, with capacity and retention."""
+        """What followed from the drop, with the capacity."""
         table = self._judgement_table()
         if table is None:
             return None
         folder = self._path("judgement" if "judgement" in self.records else "containability")
         with reading(folder):
             return Judgement.from_table(table, folder)
+
+    @cached_property
+    def retention(self) -> Retention | None:
+        """How firmly the object holds; none if it was not tilted."""
+        for name in ("retention", "judgement", "containability"):  # earlier versions kept it with the verdict
+            folder = self._path(name)
+            if name in self.records and (folder / RETENTION_FILE).is_file():
+                with reading(folder):
+                    return Retention.load(folder)
+        return None
 
     @cached_property
     def drop(self) -> Drop | None:

@@ -106,15 +106,12 @@ def verdict_reason(containability: Containability, n_on_top: int) -> str:
 
 
 def capacity_text(verdict: Verdict) -> str:
-    """Say what an object holds for its size; of what is not a container also when that leaves it."""
+    """Say what an object holds for its size."""
     needed = f"(containers: over {100 * verdict.threshold:.0f}{_NO_BREAK}%)"
     hollow = f"hollow for {100 * verdict.capacity_share:.0f}{_NO_BREAK}% of its bulk {needed}"
     if verdict.n_candies < 0.5:
         return hollow
-    held = f"{held_text(verdict)}. {hollow.capitalize()}"
-    if verdict.is_container or verdict.n_load == 0:
-        return held
-    return f"{held}; tilted by more than {degrees(verdict.holds_rad):.0f} degrees it loses candies"
+    return f"{held_text(verdict)}. {hollow.capitalize()}"
 
 
 def held_text(verdict: Verdict) -> str:

@@ -32,10 +32,11 @@ def test_a_changed_judgement_is_made_anew_and_said(poursight, mug_session, words
 
     view = SessionView.of(mug_session)
     for name, value in SETTINGS.items():
-        assert view.records["judgement"].parameters[name] == value
+        stage = "retention" if name.startswith("holding.") else "judgement"
+        assert view.records[stage].parameters[name] == value
     assert view.records["judgement"].digest != digests["judgement"]
     assert view.records["containability"].created == before["containability"], "the drop reads none of them"
-    assert view.judgement.retention.n_asked == 8
+    assert view.retention.n_asked == 8
     assert set(freshness(view.session, view.parameters_of("judgement")).values()) >= {Freshness.FRESH}
 
     code, _, err = poursight("report", mug_session)

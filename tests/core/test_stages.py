@@ -21,7 +21,8 @@ from core.stages import (
 )
 
 RECONSTRUCTION = ["reconstruction", "quality", "colors"]
-PHYSICS = ["containability", "judgement", "amount", "pouring", "risk"]
+JUDGED = ["judgement", "amount", "pouring", "risk"]
+PHYSICS = ["containability", *JUDGED, "retention"]
 POURS = ["pouring", "risk", "evidence"]
 FIRST_STALE = {
     "seed": [*PHYSICS, "evidence"],
@@ -31,11 +32,11 @@ FIRST_STALE = {
     "particle": [*PHYSICS, "evidence"],
     "solver": [*PHYSICS, "evidence"],
     "containability": [*PHYSICS, "evidence"],
-    "containability.verdict": [*PHYSICS[1:], "evidence"],
-    "containability.capacity_threshold": [*PHYSICS[1:], "evidence"],
-    "containability.omega_threshold": [*PHYSICS[1:], "evidence"],
-    "capacity": [*PHYSICS[1:], "evidence"],
-    "holding": [*PHYSICS[1:], "evidence"],
+    "containability.verdict": [*JUDGED, "retention", "evidence"],
+    "containability.capacity_threshold": [*JUDGED, "evidence"],
+    "containability.omega_threshold": [*JUDGED, "evidence"],
+    "capacity": [*JUDGED, "evidence"],
+    "holding": ["retention"],
     "pouring": POURS,
     "pouring.amount": ["amount", *POURS],
     "pouring.n_pour": ["amount", *POURS],

@@ -41,7 +41,7 @@ from core.stages import SCAN, stage
 from hardware.simulation.pour_outcome.outcome import TableOutcome
 
 N_VIEWS, N_DROP, N_POUR = 4, 12, 6
-_VERDICT = Verdict(0.4, 0.1, 21.0, 18.5, 10, 0.4)
+_VERDICT = Verdict(0.4, 0.1, 21.0, 18.5)
 
 
 def make_whole_session(folder: Path) -> Path:
@@ -67,7 +67,8 @@ def make_whole_session(folder: Path) -> Path:
         write("quality", quality().save)
         write("collision", CollisionModel("exact", (box_mesh(),), box_mesh()).save)
         write("containability", drop().save)
-        write("judgement", Judgement(0.1, _VERDICT, capacity(), retention()).save)
+        write("judgement", Judgement(0.1, _VERDICT, capacity()).save)
+        write("retention", retention().save)
         write("amount", PlannedAmount(N_POUR, amount()).save)
         write("pouring", grid().save)
         write("risk", Tries(risk(), choice(0, 1)).save)

@@ -17,9 +17,9 @@ from core.session import Session, StageRecord
 from core.session.pour_runs import PourRun, pour_runs
 from core.stages import GIVEN, MESH, STAGE_NAMES, stages_before
 
-_PROGRESS_OF = {"judgement": ("capacity", "retention"), "amount": ()}
+_PROGRESS_OF = {"judgement": ("capacity",), "amount": ()}
 """Stages whose progress goes by other names, or that take no time."""
-IMAGINING = ("risk", "quality", "colors")
+IMAGINING = ("risk", "retention", "quality", "colors")
 """What imagining brings up to date, with all before it."""
 _OF_A_SCAN = ("reconstruction", "quality", "colors")
 

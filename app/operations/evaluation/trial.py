@@ -32,6 +32,7 @@ from core.geometry import FloatArray
 from core.imagination.cup_runs import CupRuns
 from core.imagination.judgement import Judgement
 from core.imagination.results import Containability, Drop, PourChoice, PourGrid
+from core.imagination.retention.result import Retention
 from core.imagination.risk.tries import Tries
 from core.imagination.verdict import Verdict
 from core.mesh import TriangleMesh
@@ -53,7 +54,7 @@ from hardware.simulation.pour_outcome.settings import OutcomeSettings
 
 _T = TypeVar("_T")
 _PICTURE_PX = (320, 240)
-_TIMED = ("collision", "containability", "judgement", "pouring", "risk", "motion")
+_TIMED = ("collision", "containability", "judgement", "pouring", "risk", "retention", "motion")
 _BY_OMEGA = {
     "containability.verdict": "omega",
     "containability.omega_threshold": 0.0,
@@ -169,6 +170,7 @@ def _imagine(work: _Work, variant: Variant, parameters: Parameters, facts: dict[
     picture = work.picture(parameters, found)
     if work.task.n_pours > 0 and found.is_open_container:
         facts |= work.poured(parameters, variant.has_arm)
+        facts["holds_rad"] = work.holds_rad(parameters)
     return picture
 
 
@@ -197,7 +199,6 @@ def _of_verdict(verdict: Verdict | None) -> dict[str, Any]:
         "capacity_candies": verdict.level_candies,
         "capacity_ml": verdict.level_ml,
         "unseen_ml": verdict.unseen_ml if verdict.is_undecided else None,
-        "holds_rad": verdict.holds_rad,
     }
 
 
@@ -230,6 +231,11 @@ class _Work:
         drop: Drop = memory.result("containability", parameters)
         judgement: Judgement = memory.result("judgement", parameters)
         return judgement.of(drop)
+
+    def holds_rad(self, parameters: Parameters) -> float | None:
+        """Tilt the object; returns the tilt up to which nothing leaves, none if that was not imagined."""
+        found: Retention | None = self._stages().result("retention", parameters)
+        return None if found is None else found.holds_rad
 
     def poured(self, parameters: Parameters, has_arm: bool) -> dict[str, Any]:
         """Imagine the pours, choose, and pour in the ground-truth simulation; returns facts of the trial.

@@ -44,7 +44,8 @@ STAGE_TITLES = {
     "scan": "scan and reconstruction",
     "collision": "collision model",
     "containability": "containability imagination",
-    "judgement": "imagined filling and tilting",
+    "judgement": "imagined filling",
+    "retention": "imagined tilting",
     "verdict": "imagined filling and tilting",  # as evaluations of earlier versions call it
     "pouring": "pouring imagination",
     "risk": "pours with errors of the set-up",

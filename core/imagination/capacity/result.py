@@ -12,7 +12,8 @@ from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import FloatArray
 from core.imagination.recording import Recording
 
-_TABLE, _ARRAYS = "capacity.json", "capacity.npz"
+CAPACITY_FILE = "capacity.json"
+_ARRAYS = "capacity.npz"
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ class Capacity:
 
     def save(self, folder: Path) -> None:
         """Write `capacity.json` and `capacity.npz` into an existing folder."""
-        write_json(folder / _TABLE, self.to_table())
+        write_json(folder / CAPACITY_FILE, self.to_table())
         recorded = {} if self.recording is None else self.recording.to_arrays()
         write_arrays(folder / _ARRAYS, heights_m=self.heights_m, volumes_ml=self.volumes_ml, **recorded)
 
@@ -111,7 +112,7 @@ class Capacity:
         Raises:
             SessionError: a file is missing or damaged.
         """
-        table, arrays = read_json(folder / _TABLE), read_arrays(folder / _ARRAYS)
+        table, arrays = read_json(folder / CAPACITY_FILE), read_arrays(folder / _ARRAYS)
         for name in ("n_poured", "n_full", "n_kept"):
             table[name] = tuple(table[name])
         table["heights_m"], table["volumes_ml"] = arrays["heights_m"], arrays["volumes_ml"]

@@ -40,7 +40,7 @@ def test_a_dish_is_a_container_for_most_of_it_is_room(dish_judged):
     room_ml, hull_ml = 90 * 50 * 35 / 1000, 100 * 60 * 40 / 1000
     assert verdict.capacity_share == pytest.approx(room_ml / hull_ml, rel=0.25)
     assert verdict.volume_ml == pytest.approx(room_ml, rel=0.25)
-    assert verdict.holds_rad > 0.3
+    assert dish_judged.retention.holds_rad > 0.3
     assert dish_judged.grid is not None
 
 
@@ -69,14 +69,13 @@ def test_by_the_papers_rule_nothing_is_filled(dish, few, pool):
 
 def test_a_judgement_survives_the_disk(dish_judged, tmp_path):
     found = dish_judged.containability
-    judged = Judgement(found.omega_threshold, found.verdict, dish_judged.capacity, dish_judged.retention)
+    judged = Judgement(found.omega_threshold, found.verdict, dish_judged.capacity)
     for case, folder in ((judged, tmp_path / "by_capacity"), (Judgement(0.1), tmp_path / "by_omega")):
         folder.mkdir()
         case.save(folder)
         again = Judgement.load(folder)
         assert (again.omega_threshold, again.verdict) == (case.omega_threshold, case.verdict)
         assert (again.capacity is None) == (case.capacity is None)
-        assert (again.retention is None) == (case.retention is None)
 
 
 @pytest.fixture(scope="module")

@@ -30,20 +30,19 @@ def test_verdict(tray: Containability, block: Containability) -> None:
 
 
 def test_a_verdict_by_capacity_says_what_it_holds_and_the_papers_stands_beside(tray: Containability) -> None:
-    holds = replace(tray, verdict=Verdict(0.634, 0.1, 137.2, 146.4, 24, 1.0))
+    holds = replace(tray, verdict=Verdict(0.634, 0.1, 137.2, 146.4))
     assert verdict_sentence(holds).replace("\u00a0", " ") == (
         "Open container: it holds 137 candies (146 ml). Hollow for 63 % of its bulk (containers: over 10 %)."
     )
     assert omega_verdict_sentence(holds).startswith(
         "By Omega an open container: 146 of 308 dropped candies stayed"
     )
-    lies_on = replace(tray, verdict=Verdict(0.034, 0.1, 47.0, 54.0, 23, 0.105))
+    lies_on = replace(tray, verdict=Verdict(0.034, 0.1, 47.0, 54.0))
     assert verdict_sentence(lies_on).replace("\u00a0", " ") == (
         "Not an open container: it holds 47 candies (54 ml). "
-        "Hollow for 3 % of its bulk (containers: over 10 %); "
-        "tilted by more than 6 degrees it loses candies."
+        "Hollow for 3 % of its bulk (containers: over 10 %)."
     )
-    empty = replace(tray, verdict=Verdict(0.0, 0.1, 0.0, 0.0, 0, 0.0))
+    empty = replace(tray, verdict=Verdict(0.0, 0.1, 0.0, 0.0))
     assert verdict_sentence(empty).replace("\u00a0", " ") == (
         "Not an open container: hollow for 0 % of its bulk (containers: over 10 %)."
     )
@@ -132,7 +131,7 @@ def test_where_omega_decides_the_reason_says_what_had_to_stay(
     )
     few = replace(block, retained=np.arange(block.n_drop) == 3, omega_threshold=0.03)
     assert "only 1.6 % did. The others fell past it" in verdict_reason(few, 0).replace("\u00a0", " ")
-    assert verdict_reason(replace(tray, verdict=Verdict(0.6, 0.1, 137.2, 146.4, 24, 1.0)), 0) == (
+    assert verdict_reason(replace(tray, verdict=Verdict(0.6, 0.1, 137.2, 146.4)), 0) == (
         omega_verdict_sentence(tray)
     )
 
@@ -161,21 +160,21 @@ def test_durations_are_said_as_people_say_them(seconds: float, text: str) -> Non
 
 
 def test_level_and_heap_are_two_figures_and_balls_make_no_heap(tray):
-    pan = Verdict(0.9, 0.1, 1310.0, 1442.0, 24, 1.0, level_candies=740.0, level_ml=805.0)
+    pan = Verdict(0.9, 0.1, 1310.0, 1442.0, level_candies=740.0, level_ml=805.0)
     assert held_text(pan) == "level with its rim it holds 740 candies (805 ml), heaped 1310"
     assert held_text(replace(pan, has_stand_ins=True)) == "level with its rim it holds 740 candies (805 ml)"
-    lid = Verdict(0.03, 0.1, 12.0, 13.0, 12, 0.1, level_candies=0.0, level_ml=0.0)
+    lid = Verdict(0.03, 0.1, 12.0, 13.0, level_candies=0.0, level_ml=0.0)
     assert held_text(lid) == "12 candies stay on it, with no closed rim around them"
     assert "level with its rim" in verdict_sentence(replace(tray, verdict=pan))
 
 
 def test_what_was_not_seen_is_said_with_both_answers(tray):
-    unseen = Verdict(0.02, 0.1, 3.0, 3.2, 3, 0.1, unseen_ml=240.0, other_share=0.6)
+    unseen = Verdict(0.02, 0.1, 3.0, 3.2, unseen_ml=240.0, other_share=0.6)
     assert verdict_sentence(replace(tray, verdict=unseen)) == (
         "Cannot tell: 240 ml inside were not seen. If that is solid, it is no container; if not, a "
         "container. Look again from further views."
     )
-    bottomless = Verdict(0.6, 0.1, 90.0, 95.0, 24, 1.0, unseen_ml=40.0, other_share=0.0)
+    bottomless = Verdict(0.6, 0.1, 90.0, 95.0, unseen_ml=40.0, other_share=0.0)
     found = replace(tray, verdict=bottomless)
     assert verdict_sentence(found).startswith(
         "Cannot tell: 40 ml inside were not seen. If that is solid, it is a"

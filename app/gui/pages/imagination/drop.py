@@ -104,6 +104,7 @@ class DropKey:
     judgement: str
     collision: str
     pouring: str
+    retention: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,7 +173,8 @@ class ShownDrop:
 
 def key_of(view: SessionView) -> DropKey:
     """Look up the stages' digests."""
-    records = [view.finished.get(stage) for stage in ("containability", "judgement", "collision", "pouring")]
+    stages = ("containability", "judgement", "collision", "pouring", "retention")
+    records = [view.finished.get(stage) for stage in stages]
     digests = ["" if record is None else record.digest for record in records]
     return DropKey(view.session.path, *digests)
 
@@ -204,7 +206,7 @@ def load(key: DropKey) -> ShownDrop | ShownBody | None:
         drop=drop,
         containability=None if judgement is None else judgement.of(drop),
         capacity=None if judgement is None else judgement.capacity,
-        retention=None if judgement is None else judgement.retention,
+        retention=view.retention,
         settings=settings,
         particle=particle,
         seed=parameters.seed,

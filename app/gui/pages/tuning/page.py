@@ -37,7 +37,7 @@ from core.evaluation.labels import LabelledObject
 from core.parameters import Parameters, load_preset
 from core.stages import groups_of
 
-GROUPS = tuple(group for group in groups_of("collision", "judgement") if group != "seed")
+GROUPS = tuple(group for group in groups_of("collision", "judgement", "retention") if group != "seed")
 Draft = tuple[str, Parameters]  # the preset that the next run started from, and its parameters
 
 

@@ -74,8 +74,8 @@ def test_what_was_not_seen_is_looked_at_again(desk, block_session):
     """The block's verdict, as if 90 ml behind an opening had not been seen."""
     path = block_session / "judgement" / "judgement.json"
     table = json.loads(path.read_text())
-    verdict = {"capacity_share": 0.01, "threshold": 0.1, "n_candies": 0.0, "volume_ml": 0.0, "n_load": 0}
-    verdict |= {"holds_rad": 0.0, "unseen_ml": 90.0, "other_share": 0.6}
+    verdict = {"capacity_share": 0.01, "threshold": 0.1, "n_candies": 0.0, "volume_ml": 0.0}
+    verdict |= {"unseen_ml": 90.0, "other_share": 0.6}
     path.write_text(json.dumps(table | {"verdict": verdict}))
     _of_this_size(block_session / "judgement", path)
     desk.workspace.open(block_session)
