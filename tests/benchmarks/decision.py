@@ -67,8 +67,10 @@ def decision(one: LabelledObject, pool: WorkerPool, folder: Path) -> tuple[float
         began_s, began_cpu_s = perf_counter(), processor_s()
         pipeline.result("judgement")
         verdict_s = perf_counter() - began_s
-        pipeline.imagination()
-        return verdict_s, perf_counter() - began_s, processor_s() - began_cpu_s
+        pipeline.result("risk")
+        pour_s = perf_counter() - began_s
+        pipeline.imagination()  # how firmly it holds is known later, and costs what it costs
+        return verdict_s, pour_s, processor_s() - began_cpu_s
 
 
 def processor_s() -> float:

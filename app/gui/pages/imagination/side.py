@@ -188,16 +188,16 @@ class VerdictSide(SidePanel):
 
     def _retention_facts(self, drop: ShownDrop) -> list[Fact]:
         capacity, retention = drop.capacity, drop.retention
-        if capacity is None or retention is None:
+        if capacity is None:
             return []
         held = self.tr("{n:.0f} candies, {ml:.0f} ml level").format(n=capacity.n_level, ml=capacity.volume_ml)
         water = self.tr("Filled from above until it overflowed, then perturbed. Water: {ml:.0f} ml.").format(
             ml=capacity.geometric_volume_ml
         )
-        return [
-            Fact(self.tr("Holds"), held, f"{water} {capacity.remark}".strip()),
-            Fact(self.tr("Tilted"), self._tilted(retention), retention_sentence(retention)),
-        ]
+        holds = Fact(self.tr("Holds"), held, f"{water} {capacity.remark}".strip())
+        if retention is None:  # it is tilted last
+            return [holds]
+        return [holds, Fact(self.tr("Tilted"), self._tilted(retention), retention_sentence(retention))]
 
     def _tilted(self, retention: Retention) -> str:
         if isinf(retention.first_rad):
