@@ -29,7 +29,8 @@ from core.session.operator_choice import OperatorChoice, damaged_choice, read_op
 from core.stages import MESH, recorded_settings
 
 IMAGINED = ("containability", "judgement", "amount", "pouring", "risk")
-"""The stages of the imagination, in their order."""
+"""The stages that lead to the chosen pour, in their order."""
+ALL_IMAGINED = (*IMAGINED, "retention")
 
 
 @dataclass(frozen=True)

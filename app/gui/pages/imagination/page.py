@@ -17,19 +17,10 @@ from app.gui.pages.imagination.drop import DropKey, ShownBody, ShownDrop, key_of
 from app.gui.pages.imagination.side import VerdictSide
 from app.gui.pages.imagination.view import DropReplay, PicturesPart
 from app.gui.pages.page import SplitView
-from app.gui.theme import GRID_PX
 from app.gui.views.labels import say
 from app.jobs.session_work import PictureDrawn, SessionWork
 from core.imagination.results import PoursSoFar
-from core.pipeline.session_view import IMAGINED
-from core.stages import MESH, groups_of, stages_before
-
-MM = 1000.0
-STAGES = stages_before("risk", MESH)[1:]
-"""What the page runs; the collision model is made again with them."""
-GROUPS = groups_of(*STAGES)
-_LOWER_PX = 38 * GRID_PX
-"""Of footprint or editor, at the least."""
+from core.pipeline.session_view import ALL_IMAGINED
 
 
 class ImaginationPage(BackgroundPage[DropKey, ShownDrop | ShownBody | None]):
@@ -184,7 +175,7 @@ class ImaginationPage(BackgroundPage[DropKey, ShownDrop | ShownBody | None]):
 
     def _is_done(self) -> bool:
         """Whether there is nothing to imagine."""
-        return all(self.desk.workspace.is_fresh(stage) for stage in IMAGINED)
+        return all(self.desk.workspace.is_fresh(stage) for stage in ALL_IMAGINED)
 
     def _show_pictures(self) -> None:
         """Those that are being rendered, or those that belong to the drop that is shown."""

@@ -23,13 +23,13 @@ from app.gui.views.pour_map import MappedPour, PourMap
 from app.gui.views.retention_chart import RetentionChart
 from core.imagination.results import PoursSoFar
 from core.imagination.retention.result import Retention, retention_sentence
-from core.pipeline.session_view import IMAGINED
+from core.pipeline.session_view import ALL_IMAGINED
 from core.report.plot_geometry import FootprintPlan
 from core.report.sentences import duration_text, verdict_reason, verdict_sentence
 from core.stages import MESH, groups_of, stages_before
 
 MM = 1000.0
-STAGES = stages_before("risk", MESH)[1:]
+STAGES = (*stages_before("risk", MESH)[1:], "retention")
 """What the page runs; the collision model is made again with them."""
 GROUPS = groups_of(*STAGES)
 _LOWER_PX = 38 * GRID_PX
@@ -62,7 +62,7 @@ class VerdictSide(SidePanel):
         self._empty_button = QPushButton()
         self._empty_button.setObjectName("drop_empty_button")
         self._empty_button.clicked.connect(self.empty_wanted)
-        self.stale = StaleNote(("reconstruction", "collision", *IMAGINED))
+        self.stale = StaleNote(("reconstruction", "collision", *ALL_IMAGINED))
         self.omega = OmegaBar()
         self._desk = desk
         self._is_filling = False

@@ -31,7 +31,7 @@ from core.errors import SessionError
 from core.geometry import FloatArray
 from core.imagination.results import PourGrid
 from core.parameters import apply_settings
-from core.pipeline.session_view import IMAGINED, SessionView
+from core.pipeline.session_view import ALL_IMAGINED, SessionView
 from core.report import place_text
 from core.report.sentences import ratio_text
 from core.scratch import ScratchFolder
@@ -40,7 +40,7 @@ NOTHING, FIXED, BEFORE, OTHER = range(4)
 SAME_DIRECTION_RAD = np.radians(0.5)
 """A direction this near to one of the grid's counts as that one: nothing new need be imagined."""
 _LEFT_OUT = shutil.ignore_patterns(
-    ".*", "pours", *IMAGINED, "motion", "evidence", "*.html", "operator_choice.json"
+    ".*", "pours", *ALL_IMAGINED, "motion", "evidence", "*.html", "operator_choice.json"
 )
 _ONLY_POURS = {
     "containability.verdict": "omega",
