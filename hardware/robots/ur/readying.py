@@ -54,9 +54,8 @@ def next_step(dashboard: Dashboard, seen: Glance, tool: Tool, name: str) -> tupl
     program = dashboard.program()
     if program is not None:
         moves = ", and the arm moves" if seen.is_moving else ""
-        return ReadyStep.END_PROGRAM, (
-            f"Another program is on the {name} ({program}){moves}; ending it stops what it does."
-        )
+        effect = "it cannot go on then." if is_paused(program) else "ending it stops what it does."
+        return ReadyStep.END_PROGRAM, f"Another program is on the {name} ({program}){moves}; {effect}"
     if seen.safety_mode in _SAFETY_RESTARTS:
         return ReadyStep.RESTART_SAFETY, (
             f"The safety system of the {name} is in '{seen.safety_mode.words}'; see on its panel why before "
@@ -179,21 +178,28 @@ _OURS_ENDS_WITHIN_S = 1.0
 _POLL_S = 0.01
 
 
-def refuse_foreign_program(dashboard: Dashboard, name: str, may_be_ours: Callable[[], bool]) -> None:
-    """Refuse to recover where somebody else's program runs.
+def is_paused(program: str) -> bool:
+    """Whether a program, as the dashboard names it, does not run now."""
+    return program.upper().startswith("PAUSED")
 
-    Our own ends by its watchdog once its worker is gone, and one that is paused does not move. When a link
-    comes back, ur_rtde starts our program again, without a watchdog: that one stays, and is asked about.
+
+def refuse_foreign_program(dashboard: Dashboard, name: str, may_be_ours: Callable[[], bool]) -> None:
+    """Refuse to recover where somebody else's program runs or is paused.
+
+    Our own ends by its watchdog once its worker is gone, and is ended after each stop of the controller,
+    which pauses it. When a link comes back, ur_rtde starts it again, without a watchdog: that one stays, and
+    is asked about. A paused one may be anybody's, with work under way that ends with it.
 
     Raises:
-        RobotNotReady: one runs on.
+        RobotNotReady: one stays.
     """
     deadline_s = time.monotonic() + _OURS_ENDS_WITHIN_S
-    while (program := dashboard.program()) is not None and program.upper().startswith("PLAYING"):
+    while (program := dashboard.program()) is not None:
         if time.monotonic() > deadline_s:
-            if may_be_ours():
+            if not is_paused(program) and may_be_ours():
                 return
+            does = "is paused" if is_paused(program) else "runs"
             raise RobotNotReady(
-                f"Another program runs on the {name} ({program}); end it, then recover the robot again."
+                f"Another program {does} on the {name} ({program}); end it, then recover the robot again."
             )
         time.sleep(_POLL_S)

@@ -317,3 +317,29 @@ def test_a_foreign_program_is_not_ended_by_recovering(bench: Bench) -> None:
     bench.robot.take_step(ReadyStep.END_PROGRAM)
     bench.robot.recover()
     bench.works_again()
+
+
+@pytest.mark.parametrize("fault", ["foreign still", "foreign moving"])
+def test_a_foreign_program_that_is_paused_is_asked_about_too(bench: Bench, fault: str) -> None:
+    bench.robot.stop()
+    bench.controller.command(fault)
+    bench.controller.command("program pause")
+    wait_until(lambda: bench.truth()["runtime_state"] == "PAUSED")
+    with pytest.raises(RobotNotReady, match=r"Another program is paused .*PAUSED weld\.urp"):
+        bench.robot.recover()
+    assert bench.truth()["runtime_state"] == "PAUSED"
+    step, why = bench.robot.pending_step()
+    assert step is ReadyStep.END_PROGRAM
+    assert "PAUSED weld.urp" in why
+    assert "cannot go on" in why
+    bench.robot.take_step(step)
+    wait_until(lambda: bench.truth()["runtime_state"] == "STOPPED")
+    bench.robot.recover()
+    bench.works_again()
+
+
+def test_our_own_program_that_the_controller_paused_is_not_asked_about(fast_bench: Bench) -> None:
+    fast_bench.controller.command("protective stop")
+    wait_until(lambda: fast_bench.robot.stopped_by() is not None)
+    fast_bench.robot.recover()
+    fast_bench.works_again()
