@@ -24,6 +24,7 @@ from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from core.session import explained
 from core.session.pour_runs import next_run_folder, pour_runs, unfinished_run
+from core.session.swapping import flush
 from hardware.cell import Arm
 from hardware.driving import SAME_PLACE_RAD, WatchedArm, refuse_restricted
 from hardware.errors import DeviceError, ObjectLost, OutputChanged, RobotError, RobotStopped, TrackingLost
@@ -126,6 +127,7 @@ class Pouring:
             with explained(folder):
                 (folder / PLAN_FOLDER).mkdir()
                 plan.save(folder / PLAN_FOLDER)
+                flush(folder / PLAN_FOLDER)  # the way back is planned along it
             log.event(
                 "confirmed",
                 f"Pour {plan.i}, {plan.j} was confirmed: {plan.duration_s:.0f} s.",
