@@ -35,7 +35,8 @@ _JUST_NOW_S, _LEARNED_S = 0.3, 1.5
 """A lag is compared with older ones: one that grows because of a fault is noticed before it counts."""
 _LATER, _LATE_S = 1.3, 0.06
 _TELLING_RAD_S = 0.1
-_STANDS_S = 0.1
+_STANDS_S, _MOST_OF_IT_S = 0.1, 0.03
+"""So long an arm must be seen to stand; of a pause between two states no more counts: nobody looked then."""
 _STANDING_RAD_S, _MOVING_RAD_S = 0.01, 0.05
 _SLOWED = 0.3
 """With the speed slider lower than this a standing arm says nothing."""
@@ -210,7 +211,7 @@ class Following:
         self._last_s: float | None = None
         self._settles_since_s: float | None = None
         self._seen_lag_s: float | None = None
-        self._stood_s = 0.0
+        self._seen_s, self._stood_s = 0.0, 0.0
         self._last_bit: JointMoves | None = None
 
     def step(self, raw: AnyArray) -> bool:
@@ -219,14 +220,13 @@ class Following:
             return self._last_bit.step(raw)
         raise_if(deviation(raw))
         now_s = float(raw["controller_s"])
-        since_s = 0.0 if self._last_s is None else now_s - self._last_s
+        passed_s = 0.0 if self._last_s is None else now_s - self._last_s
         self._last_s = now_s
-        passed_s = min(max(since_s, 0.0), _MOST_CYCLES * self._cycle_s)
-        self._clock_s += passed_s * float(raw["speed_scaling"])
+        self._clock_s += min(max(passed_s, 0.0), _MOST_CYCLES * self._cycle_s) * float(raw["speed_scaling"])
         self.progress = min(self._clock_s / self._trajectory.duration_s, 1.0)
         expected_rad = self._expected()
         raise_if(self._beside_path(raw["joints_rad"], expected_rad))
-        self._refuse_standing(raw, expected_rad, passed_s)
+        self._refuse_standing(raw, expected_rad)
         if self._clock_s >= self._trajectory.duration_s:
             if self._settles_since_s is None:
                 # Ended one step later at the earliest: `progress` tells before that the end takes its time.
@@ -269,11 +269,11 @@ class Following:
             )
         return beside_path(joints_rad, expected_rad, self._margin)
 
-    def _refuse_standing(self, raw: AnyArray, expected_rad: FloatArray, passed_s: float) -> None:
+    def _refuse_standing(self, raw: AnyArray, expected_rad: FloatArray) -> None:
         """Refuse an arm at rest while all of the last part of its path moves: no lag explains that.
 
         How late the arm is when it begins to move tells how long that part is; before, it is as long as the
-        lags on earlier paths make it. What counts is the time of the states that are seen, no pause between.
+        lags on earlier paths make it.
 
         Raises:
             TrackingLost: it has been so for some time; perhaps another program has the arm.
@@ -285,10 +285,11 @@ class Following:
         lag_s = self._lag.most_s if self._seen_lag_s is None else _LATER * self._seen_lag_s + _LATE_S
         step_s = _LAG_S / (_LAG_SAMPLES - 1)
         slowest_rad_s = float(steps_rad[: max(round(lag_s / step_s), 1)].min()) / step_s
+        seen_s, self._seen_s = self._seen_s, float(raw["time_s"])
         if not is_at_rest or slowest_rad_s < _MOVING_RAD_S or raw["speed_scaling"] < _SLOWED:
             self._stood_s = 0.0
             return
-        self._stood_s += passed_s
+        self._stood_s += min(self._seen_s - seen_s, _MOST_OF_IT_S)
         if self._stood_s > _STANDS_S:
             raise TrackingLost(
                 "The arm stands while its path goes on, as if another program had taken it over; see what "
