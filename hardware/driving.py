@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import Protocol
 
@@ -13,7 +13,7 @@ from core.geometry import FloatArray
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
-from hardware.errors import DeviceError, RobotError, RobotLost, TrackingLost
+from hardware.errors import DeviceError, RobotError, RobotLost, RobotNotReady, TrackingLost
 from hardware.interfaces import Move, Robot, RobotState
 from hardware.modes import SafetyMode, unreadiness
 
@@ -165,10 +165,25 @@ class WatchedArm:
             time.sleep(_POLL_S)
 
 
-def outermost(joints_rad: FloatArray) -> FloatArray:
-    """Return some configurations of a motion (N, 6): its ends, and where each joint is lowest and highest."""
-    rows = {0, len(joints_rad) - 1, *joints_rad.argmin(axis=0).tolist(), *joints_rad.argmax(axis=0).tolist()}
-    return joints_rad[sorted(rows)]
+def refuse_restricted(
+    robot: Robot, motions: Iterable[tuple[JointTrajectory, str]], reporter: Reporter
+) -> None:
+    """Refuse motions, each with its label, that what is set on the arm's controller does not allow.
+
+    To be called before somebody confirms them; what only makes the arm slow is said.
+
+    Raises:
+        RobotError: the sentence says what does not allow which of them.
+    """
+    state = robot.state()
+    if state.speed_scaling < _STILL:
+        raise RobotNotReady(
+            "The speed slider is at 0, so nothing would move; raise it at the panel, then plan again."
+        )
+    for trajectory, label in motions:
+        robot.refuse_unsafe(trajectory, label)
+    if slow := slowness(state):
+        reporter.warn(slow)
 
 
 _FULL_SPEED, _STILL = 0.99, 0.005

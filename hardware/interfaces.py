@@ -201,11 +201,11 @@ class Robot(_Device, Protocol):
         """
         ...
 
-    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
-        """Refuse a motion through configurations (N, 6) that the arm's safety system does not allow.
+    def refuse_unsafe(self, trajectory: JointTrajectory, label: str) -> None:
+        """Refuse a motion that the arm's configuration or its safety system does not allow.
 
         Raises:
-            MoveRefused: it does not allow one; `label` names the motion in the sentence.
+            MoveRefused: one does not; `label` names the motion in the sentence.
             RobotError: it does not answer.
         """
         ...

@@ -149,8 +149,10 @@ class ArmWork(Service):
                 with self._moving(connected):
                     return offer.pouring.carry_out(offer.fresh)
 
-    def recover(self, reporter: JobReporter) -> None:
+    def recover(self, reporter: JobReporter, step: ReadyStep | None = None) -> None:
         """After a stop, make the arm ready to move again; it does not move.
+
+        A step that somebody confirmed is taken first; one that is in the way is published.
 
         Raises:
             RobotError: a person has to do something first.
@@ -160,10 +162,16 @@ class ArmWork(Service):
             self._offer = None
             connected.must_recover = False  # now, so that a stop that comes meanwhile is not forgotten
             connected.is_at_work = True
+            robot = connected.arm.robot
             try:
-                (connected.pouring or connected.arm.robot).recover()  # a pour writes it down
+                if step is not None:
+                    robot.take_step(step)
+                (connected.pouring or robot).recover()  # a pour writes it down
             except RobotError:
                 connected.must_recover = True
+                pending = robot.pending_step()
+                if pending is not None:
+                    reporter.publish(StepPending(*pending))
                 raise
             finally:
                 connected.is_at_work = False

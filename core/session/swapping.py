@@ -32,7 +32,7 @@ def abandon(folder: Path, stage: str) -> None:
 def commit(folder: Path, stage: str) -> None:
     """Let the temporary folder take the place of the stage's old one."""
     writing, new = _beside(folder, stage, _WRITING), _beside(folder, stage, _NEW)
-    _flush(writing)
+    flush(writing)
     writing.rename(new)
     _put_in_place(folder, stage)
 
@@ -51,7 +51,7 @@ def _put_in_place(folder: Path, stage: str) -> None:
         _remove(old)
         place.rename(old)
     _beside(folder, stage, _NEW).rename(place)
-    _flush_entry(folder)
+    flush_entry(folder)
     _remove(old)
 
 
@@ -67,13 +67,14 @@ def _remove(folder: Path) -> None:
         shutil.rmtree(folder)
 
 
-def _flush(folder: Path) -> None:
+def flush(folder: Path) -> None:
     """Have all files of a folder on the disk, against a power cut."""
     for path in [*folder.rglob("*"), folder]:
-        _flush_entry(path)
+        flush_entry(path)
 
 
-def _flush_entry(path: Path) -> None:
+def flush_entry(path: Path) -> None:
+    """Have a file's content, or the names in a folder, on the disk."""
     descriptor = os.open(path, os.O_RDONLY)
     try:
         os.fsync(descriptor)

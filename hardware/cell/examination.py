@@ -59,7 +59,8 @@ def examine_robot(settings: CellSettings) -> Finding:
     modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}"
     agree = "are only known when it is connected" if seen.tool_offset is None else "agree"
     said = f"{subject}, controller {version}, {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
-    said = f"{said}, {_kinematics_read(arm.kinematics)}"
+    limits = "not read (compare them at its panel)" if arm.joint_limits is None else "read"
+    said = f"{said}, {_kinematics_read(arm.kinematics)}, joint limits {limits}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
     return Finding("robot", said, problem)

@@ -20,11 +20,13 @@ from core.motion.pour.margins import MoveMargin, plan_margins, refuse_misplaced
 from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget, Segment, is_reversed
 from core.motion.pour.planning import plan_pour
 from core.motion.pour.recovery import check_rejoining, on_the_way_back, plan_back_off
+from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from core.session import explained
 from core.session.pour_runs import next_run_folder, pour_runs, unfinished_run
+from core.session.swapping import flush
 from hardware.cell import Arm
-from hardware.driving import SAME_PLACE_RAD, WatchedArm, outermost
+from hardware.driving import SAME_PLACE_RAD, WatchedArm, refuse_restricted
 from hardware.errors import DeviceError, ObjectLost, OutputChanged, RobotError, RobotStopped, TrackingLost
 from hardware.interfaces import Robot, RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
@@ -94,7 +96,7 @@ class Pouring:
         Raises:
             MotionError: there is no plan, a stopped run has to be backed off from first, or the gripper is
                 closed, so that it may hold a cup the plan knows nothing of.
-            RobotError: the arm does not respond.
+            RobotError: the arm does not respond, or its controller does not allow the plan.
         """
         if self._interrupted is not None:
             raise MotionError(
@@ -107,6 +109,7 @@ class Pouring:
                 "then plan again."
             )
         plan = plan_pour(self._cell, self._target, self._arm.robot.state().joints_rad)
+        refuse_restricted(self._arm.robot, _forwards(plan), self._reporter)
         return FreshPlan(plan, self._target, time.monotonic())
 
     def carry_out(self, fresh: FreshPlan) -> Path:
@@ -124,6 +127,7 @@ class Pouring:
             with explained(folder):
                 (folder / PLAN_FOLDER).mkdir()
                 plan.save(folder / PLAN_FOLDER)
+                flush(folder / PLAN_FOLDER)  # the way back is planned along it
             log.event(
                 "confirmed",
                 f"Pour {plan.i}, {plan.j} was confirmed: {plan.duration_s:.0f} s.",
@@ -244,9 +248,13 @@ class Pouring:
             raise MotionError("The arm was moved since this plan was made; plan again.")
         for margin in plan_margins(self._cell, target, plan).values():
             refuse_misplaced(margin, state.T_base_flange @ self._cell.T_flange_grasp, state.T_base_tool)
-        for move in plan.moves:
-            if not is_reversed(move):
-                self._arm.robot.refuse_unsafe(outermost(move.trajectory.joints_rad), move.label)
+        for trajectory, label in _forwards(plan):
+            self._arm.robot.refuse_unsafe(trajectory, label)
+
+
+def _forwards(plan: PourPlan) -> list[tuple[JointTrajectory, str]]:
+    """The motions of a plan, each with its label; those that are driven both ways once."""
+    return [(move.trajectory, move.label) for move in plan.moves if not is_reversed(move)]
 
 
 class PourProcedure:

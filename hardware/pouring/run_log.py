@@ -22,10 +22,13 @@ from core.motion.pour.plan import Segment
 from core.parameters.bodies import CupParameters
 from core.session import explained
 from core.session.pour_runs import EVENTS_FILE, STATES_FILE
+from core.session.swapping import flush_entry
 from hardware.interfaces import RobotState
 
 STATE_EVERY_S = 0.039
 """25 states per second by the controller's clock: five of its cycles of 8 ms, less some rounding."""
+_MADE = 2
+"""Folders above a run's: its session, and the folder of all its runs, which may be new."""
 _COLUMNS = (
     "time_s",
     "move",
@@ -66,6 +69,8 @@ class RunLog:
             self._table = csv.writer(self._states)
             if self._states.tell() == 0:
                 self._table.writerow(_COLUMNS)
+            for place in (folder, *list(folder.parents)[:_MADE]):
+                flush_entry(place)  # an event is of no use in a file whose name a power cut takes away
 
     def __enter__(self) -> RunLog:
         return self

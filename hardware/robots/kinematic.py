@@ -94,7 +94,7 @@ class KinematicRobot:
             self._is_stopped = True
             self._brake()
 
-    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
+    def refuse_unsafe(self, trajectory: JointTrajectory, label: str) -> None:
         """It has no safety system."""
 
     def stopped_by(self) -> RobotError | None:

@@ -61,7 +61,7 @@ class ReplayRobot:
     def stop(self) -> None:
         """Nothing moves."""
 
-    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
+    def refuse_unsafe(self, trajectory: JointTrajectory, label: str) -> None:
         """Nothing moves."""
 
     def stopped_by(self) -> None:

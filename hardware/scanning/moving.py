@@ -15,7 +15,7 @@ from core.motion.margin import PathMargin, path_margin
 from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
 from hardware.cell import Cell
-from hardware.driving import WatchedArm, outermost
+from hardware.driving import WatchedArm, refuse_restricted
 from hardware.errors import RobotError
 from hardware.interfaces import Move
 from hardware.pouring.run_log import RunLog
@@ -74,6 +74,7 @@ class WatchedMoving:
         self.was_stopped = False
         self._cell = cell
         self._log = log
+        self._reporter = reporter
         self._confirm = confirm
         self._watched = WatchedArm(cell.robot, log, reporter)
         self._legs: dict[str, Leg] = {}
@@ -84,9 +85,8 @@ class WatchedMoving:
             return
         self._refuse_full_hand()
         route = plan_route(self._cell, self._watched.ready_state().joints_rad, views)
-        for leg in route.legs:
-            if leg.trajectory is not None:
-                self._cell.robot.refuse_unsafe(outermost(leg.trajectory.joints_rad), f"to {leg.view.name}")
+        legs = [(leg.trajectory, f"to {leg.view.name}") for leg in route.legs if leg.trajectory is not None]
+        refuse_restricted(self._cell.robot, legs, self._reporter)
         self._log.event("planned", route.sentence, views=[leg.view.name for leg in route.legs])
         self.was_stopped = False
         if route.n_views:

@@ -5,7 +5,9 @@ from __future__ import annotations
 import time
 
 from core.geometry import FloatArray
+from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused
+from hardware.robots.ur.joint_limits import JointLimits
 from hardware.robots.ur.link import WorkerLink
 from hardware.robots.ur.messages import tool_outputs
 
@@ -38,18 +40,30 @@ def switch_tool_output(worker: WorkerLink, name: str, output: int, value: bool) 
     )
 
 
-def refuse_beyond_safety(worker: WorkerLink, name: str, joints_rad: FloatArray, label: str) -> None:
-    """Refuse a motion through configurations (N, 6) that the controller's safety system does not allow.
+def refuse_beyond_safety(
+    worker: WorkerLink, limits: JointLimits | None, name: str, trajectory: JointTrajectory, label: str
+) -> None:
+    """Refuse a motion beyond the configured limits, where those are known, or those of the safety system.
+
+    The latter is asked about the motion's ends, and where each joint is lowest and highest.
 
     Raises:
         MoveRefused: it does not allow one; `label` names the motion.
         RobotError: the robot, which people call `name`, does not answer.
     """
-    for k in range(0, len(joints_rad), _ASKED_AT_ONCE):
+    if limits is not None:
+        limits.refuse_beyond(trajectory, label, name)
+    asked_rad = _outermost(trajectory.joints_rad)
+    for k in range(0, len(asked_rad), _ASKED_AT_ONCE):
         try:
-            worker.ask("are_safe", joints_rad[k : k + _ASKED_AT_ONCE])
+            worker.ask("are_safe", asked_rad[k : k + _ASKED_AT_ONCE])
         except MoveRefused as refused:
             raise MoveRefused(
                 f"In the move '{label}' the arm would come where the safety limits of the {name} do not "
                 "allow it; see the joint limits under Installation, Safety, on its panel."
             ) from refused
+
+
+def _outermost(joints_rad: FloatArray) -> FloatArray:
+    rows = {0, len(joints_rad) - 1, *joints_rad.argmin(axis=0).tolist(), *joints_rad.argmax(axis=0).tolist()}
+    return joints_rad[sorted(rows)]

@@ -35,7 +35,8 @@ _JUST_NOW_S, _LEARNED_S = 0.3, 1.5
 """A lag is compared with older ones: one that grows because of a fault is noticed before it counts."""
 _LATER, _LATE_S = 1.3, 0.06
 _TELLING_RAD_S = 0.1
-_STANDS_S = 0.1
+_STANDS_S, _MOST_OF_IT_S = 0.1, 0.03
+"""So long an arm must be seen to stand; of a pause between two states no more counts: nobody looked then."""
 _STANDING_RAD_S, _MOVING_RAD_S = 0.01, 0.05
 _SLOWED = 0.3
 """With the speed slider lower than this a standing arm says nothing."""
@@ -164,6 +165,12 @@ class UsualLag:
         self._usual_s = 0.0
         self._recent: deque[tuple[float, float]] = deque()
 
+    @property
+    def most_s(self) -> float:
+        """More than this is unusual; as much as may ever be, as long as little was seen."""
+        is_known = self._followed_s > _LEARNED_S
+        return min(_LATER * self._usual_s + _LATE_S, _LAG_S) if is_known else _LAG_S
+
     def is_unusual(self, lag_s: float, passed_s: float) -> bool:
         """Note a lag, some time after the one before; whether it is more than it ever was until just now."""
         self._followed_s += passed_s
@@ -203,7 +210,8 @@ class Following:
         self._clock_s = 0.0
         self._last_s: float | None = None
         self._settles_since_s: float | None = None
-        self._stands_since_s: float | None = None
+        self._seen_lag_s: float | None = None
+        self._seen_s, self._stood_s = 0.0, 0.0
         self._last_bit: JointMoves | None = None
 
     def step(self, raw: AnyArray) -> bool:
@@ -264,21 +272,35 @@ class Following:
     def _refuse_standing(self, raw: AnyArray, expected_rad: FloatArray) -> None:
         """Refuse an arm at rest while all of the last part of its path moves: no lag explains that.
 
+        How late the arm is when it begins to move tells how long that part is; before, it is as long as the
+        lags on earlier paths make it.
+
         Raises:
             TrackingLost: it has been so for some time; perhaps another program has the arm.
         """
         steps_rad = np.abs(np.diff(expected_rad, axis=0)).max(axis=1)
-        slowest_rad_s = float(steps_rad.min()) * (_LAG_SAMPLES - 1) / _LAG_S
         is_at_rest = np.abs(raw["joint_speeds_rad_s"]).max() < _STANDING_RAD_S
+        if self._seen_lag_s is None and np.abs(raw["joint_speeds_rad_s"]).max() > _MOVING_RAD_S:
+            self._seen_lag_s = max(self._clock_s - self._moves_from_s(), 0.0)
+        lag_s = self._lag.most_s if self._seen_lag_s is None else _LATER * self._seen_lag_s + _LATE_S
+        step_s = _LAG_S / (_LAG_SAMPLES - 1)
+        slowest_rad_s = float(steps_rad[: max(round(lag_s / step_s), 1)].min()) / step_s
+        seen_s, self._seen_s = self._seen_s, float(raw["time_s"])
         if not is_at_rest or slowest_rad_s < _MOVING_RAD_S or raw["speed_scaling"] < _SLOWED:
-            self._stands_since_s = None
-        elif self._stands_since_s is None:
-            self._stands_since_s = float(raw["time_s"])
-        elif raw["time_s"] - self._stands_since_s > _STANDS_S:
+            self._stood_s = 0.0
+            return
+        self._stood_s += min(self._seen_s - seen_s, _MOST_OF_IT_S)
+        if self._stood_s > _STANDS_S:
             raise TrackingLost(
                 "The arm stands while its path goes on, as if another program had taken it over; see what "
                 "runs on the controller and what holds the arm, then recover the robot and plan anew."
             )
+
+    def _moves_from_s(self) -> float:
+        """When the path is for the first time as fast as an arm that is said to move."""
+        speeds_rad_s = np.abs(np.diff(self._trajectory.joints_rad, axis=0)).max(axis=1)
+        speeds_rad_s /= np.diff(self._trajectory.times_s)
+        return float(self._trajectory.times_s[(speeds_rad_s > _MOVING_RAD_S).argmax()])
 
     def _is_settled(self, raw: AnyArray) -> bool:
         is_still = np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S

@@ -1,4 +1,4 @@
-"""What a controller tells of its arm's own kinematics, over its primary interface.
+"""What a controller tells of its arm, over its primary interface: its own kinematics, and its joints' limits.
 
 Source: Universal Robots, "Overview of client interfaces" and their client library: big-endian packages of an
 int32 length, which counts all of it, and a uint8 type; the parts of a robot state have such a header, too.
@@ -10,6 +10,8 @@ import math
 import socket
 import struct
 import time
+from collections.abc import Callable, Iterator
+from typing import TypeVar
 
 from core.motion.arm_models import JointValues
 from core.motion.factory_calibration import MeasuredKinematics
@@ -17,9 +19,13 @@ from core.motion.factory_calibration import MeasuredKinematics
 PRIMARY_PORT = 30001
 ROBOT_STATE = 16
 KINEMATICS_INFO = 5
+CONFIGURATION_DATA = 6
 HEADER = struct.Struct(">iB")
 KINEMATICS = struct.Struct(">6I6d6d6d6dI")
 """Checksums, theta, a, d, alpha, and a status whose values are not documented."""
+CONFIGURATION = struct.Struct(">24d5d24d4i")
+"""Each joint's lowest and highest angle, then its highest speed and acceleration; the defaults of moves, an
+equivalent radius, Denavit-Hartenberg parameters, and four types. Newer versions append more."""
 _WITHIN_S = 1.0
 _LONGEST = 1 << 16
 """Of a package; a robot state has about 1,400 bytes."""
@@ -29,8 +35,24 @@ class DamagedPackage(Exception):
     """The bytes are no packages of this protocol; the text says what is wrong with them."""
 
 
+T = TypeVar("T")
+
+
 def receive_kinematics(address: str) -> MeasuredKinematics:
-    """Wait for a robot state that holds the kinematics, for `_WITHIN_S` in all; nothing is written.
+    """Wait for a robot state that holds the kinematics; raises as `_receive` does."""
+    return _receive(address, kinematics_of, "kinematics")
+
+
+def receive_configuration(address: str) -> tuple[float, ...]:
+    """Wait for a robot state that holds configuration data, the numbers of `CONFIGURATION`.
+
+    Raises as `_receive` does.
+    """
+    return _receive(address, configuration_of, "configuration data")
+
+
+def _receive(address: str, find: Callable[[bytes], T | None], what: str) -> T:
+    """Wait for a robot state in which something is found, for `_WITHIN_S` in all; nothing is written.
 
     Raises:
         OSError: nobody answers, or the connection is closed or silent.
@@ -42,10 +64,10 @@ def receive_kinematics(address: str) -> MeasuredKinematics:
         while True:
             while (package := next_package(received)) is not None:
                 kind, content, received = package
-                found = kinematics_of(content) if kind == ROBOT_STATE else None
+                found = find(content) if kind == ROBOT_STATE else None
                 if found is not None:
                     return found
-            line.settimeout(_left_s(deadline_s))
+            line.settimeout(_left_s(deadline_s, what))
             part = line.recv(1 << 14)
             if not part:
                 raise ConnectionResetError("it closed the connection")
@@ -74,15 +96,35 @@ def kinematics_of(robot_state: bytes) -> MeasuredKinematics | None:
     Raises:
         DamagedPackage: a sub-package is cut off, or a number is none.
     """
+    for kind, content in _parts(robot_state):
+        if kind == KINEMATICS_INFO:
+            return _kinematics(content)
+    return None
+
+
+def configuration_of(robot_state: bytes) -> tuple[float, ...] | None:
+    """Return the configuration data that a robot state's content holds; none if it holds none.
+
+    Raises:
+        DamagedPackage: a sub-package is cut off.
+    """
+    for kind, content in _parts(robot_state):
+        if kind == CONFIGURATION_DATA:
+            if len(content) < CONFIGURATION.size:
+                raise DamagedPackage("its configuration data are cut off")
+            return CONFIGURATION.unpack_from(content)
+    return None
+
+
+def _parts(robot_state: bytes) -> Iterator[tuple[int, bytes]]:
+    """Type and content of each part of a robot state's content."""
     rest = robot_state
     while rest:
         package = next_package(rest)
         if package is None:
             raise DamagedPackage("a part of its state is cut off")
         kind, content, rest = package
-        if kind == KINEMATICS_INFO:
-            return _kinematics(content)
-    return None
+        yield kind, content
 
 
 def _kinematics(content: bytes) -> MeasuredKinematics:
@@ -100,8 +142,8 @@ def _joint_values(values: tuple[float, ...]) -> JointValues:
     return base, shoulder, elbow, wrist_1, wrist_2, wrist_3
 
 
-def _left_s(deadline_s: float) -> float:
+def _left_s(deadline_s: float, what: str) -> float:
     left_s = deadline_s - time.monotonic()
     if left_s <= 0:
-        raise TimeoutError("it sends no kinematics")
+        raise TimeoutError(f"it sends no {what}")
     return left_s

@@ -20,6 +20,7 @@ from hardware.robots.ur.glance import Glance
 from hardware.robots.ur.messages import RUNTIME_PLAYING
 from hardware.robots.ur.motions import ARRIVED_RAD
 from hardware.robots.ur.pose_vectors import pose_from_vector
+from hardware.robots.ur.probe import set_tool_voltage
 
 RESTING_RAD_S = 0.01
 _SAFETY_RESTARTS = (SafetyMode.FAULT, SafetyMode.VIOLATION)
@@ -54,6 +55,11 @@ def next_step(dashboard: Dashboard, seen: Glance, tool: Tool, name: str) -> tupl
     program = dashboard.program()
     if program is not None:
         moves = ", and the arm moves" if seen.is_moving else ""
+        if is_paused(program):
+            return ReadyStep.END_PROGRAM, (
+                f"A program is paused on the {name} ({program}), perhaps somebody else's; once ended, it "
+                "cannot go on."
+            )
         return ReadyStep.END_PROGRAM, (
             f"Another program is on the {name} ({program}){moves}; ending it stops what it does."
         )
@@ -143,21 +149,22 @@ def refuse_power_supply(seen: Glance, tool: Tool, name: str) -> None:
         )
 
 
-def must_set_voltage(seen: Glance, tool: Tool, name: str) -> bool:
-    """Whether the tool's supply is not what it should be.
+def supply_tool(address: str, seen: Glance, tool: Tool, name: str) -> None:
+    """Set the tool's supply if it is not what it should be.
 
     Raises:
         RobotNotReady: it is not, and an output of the tool is on: what is held would drop.
+        RobotLost: the controller at the address takes nothing.
     """
     if tool.voltage_v is None or seen.tool_voltage_v == tool.voltage_v:
-        return False
+        return
     if any(seen.tool_outputs) and seen.tool_voltage_v is not None:
         raise RobotNotReady(
             f"The tool connector of the {name} has {seen.tool_voltage_v} V where the cell file says "
             f"{tool.voltage_v} V, and a tool output is on: a change would drop what the gripper holds; empty "
             "the hand and switch the output off at the panel, or correct voltage_v."
         )
-    return True
+    set_tool_voltage(address, tool.voltage_v)
 
 
 def refuse_busy(raw: AnyArray, start_rad: FloatArray, is_moving: bool, name: str) -> None:
@@ -179,21 +186,26 @@ _OURS_ENDS_WITHIN_S = 1.0
 _POLL_S = 0.01
 
 
-def refuse_foreign_program(dashboard: Dashboard, name: str, may_be_ours: Callable[[], bool]) -> None:
-    """Refuse to recover where somebody else's program runs.
+def is_paused(program: str) -> bool:
+    """Whether a program, as the dashboard names it, does not run now."""
+    return program.upper().startswith("PAUSED")
 
-    Our own ends by its watchdog once its worker is gone, and one that is paused does not move. When a link
-    comes back, ur_rtde starts our program again, without a watchdog: that one stays, and is asked about.
+
+def refuse_foreign_program(dashboard: Dashboard, name: str, may_be_ours: Callable[[], bool]) -> None:
+    """Refuse to recover where somebody else's program runs or is paused.
+
+    Our own ends by its watchdog once its worker is gone, and is ended after each stop of the controller,
+    which pauses it. When a link comes back, ur_rtde starts it again, without a watchdog: that one stays, and
+    is asked about. A paused one may be anybody's, with work under way that ends with it.
 
     Raises:
-        RobotNotReady: one runs on.
+        RobotNotReady: one stays.
     """
     deadline_s = time.monotonic() + _OURS_ENDS_WITHIN_S
-    while (program := dashboard.program()) is not None and program.upper().startswith("PLAYING"):
+    while (program := dashboard.program()) is not None:
         if time.monotonic() > deadline_s:
-            if may_be_ours():
+            if not is_paused(program) and may_be_ours():
                 return
-            raise RobotNotReady(
-                f"Another program runs on the {name} ({program}); end it, then recover the robot again."
-            )
+            what = "A program is paused" if is_paused(program) else "Another program runs"
+            raise RobotNotReady(f"{what} on the {name} ({program}); end it, then recover the robot again.")
         time.sleep(_POLL_S)

@@ -37,30 +37,29 @@ from hardware.robots.ur.checks import (
 )
 from hardware.robots.ur.dashboard import Dashboard, make_ready
 from hardware.robots.ur.glance import Glance, glance
+from hardware.robots.ur.joint_limits import JointLimits, read_joint_limits
 from hardware.robots.ur.link import UrMove, WorkerLink
 from hardware.robots.ur.messages import Ended, Setup, robot_state
 from hardware.robots.ur.own_kinematics import read_kinematics
 from hardware.robots.ur.pose_vectors import vector_from_pose
-from hardware.robots.ur.probe import probe, set_tool_voltage
+from hardware.robots.ur.probe import probe
 from hardware.robots.ur.readying import (
     RESTING_RAD_S,
     Tool,
-    must_set_voltage,
     next_step,
     refuse_busy,
     refuse_foreign_program,
     refuse_other_arm,
     refuse_power_supply,
     refuse_taken,
+    supply_tool,
     take_step,
 )
 
 STOP_ANSWER_S = 0.1
 """A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
 _CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
-_RESTS_WITHIN_S = 0.3
-_DASHBOARD_STOP_S = 0.3
-_RELEASED_WITHIN_S = 0.5
+_RESTS_WITHIN_S, _DASHBOARD_STOP_S, _RELEASED_WITHIN_S = 0.3, 0.3, 0.5
 
 _log = logging.getLogger(__name__)
 
@@ -80,6 +79,7 @@ class UR5Robot:
         name: model and address, or as given.
         controller_version: of the controller's software, such as (3, 15); empty before it was connected.
         kinematics: of the arm that was connected last, or looked at; as published before.
+        joint_limits: on the controller that was connected last, or looked at; none: it told none.
         robotiq: where a gripper is served whose grip is watched; none: there is none.
     """
 
@@ -116,6 +116,7 @@ class UR5Robot:
         self.controller_version: tuple[int, ...] = ()
         self._arm = arm
         self.kinematics = Kinematics(arm)
+        self.joint_limits: JointLimits | None = None
         self._T_flange_tool = T_flange_tool
         self.robotiq = robotiq
         self._tool = Tool(tool_voltage_v, (tolerance_m, tolerance_rad), robotiq)
@@ -282,13 +283,13 @@ class UR5Robot:
         if self._payload_kg[0] != self._payload_kg[1]:
             self._connected().worker.ask("set_payload", self._payload_kg[is_held])
 
-    def refuse_unsafe(self, joints_rad: FloatArray, label: str) -> None:
-        """Refuse a motion through configurations (N, 6) that the controller's safety system does not allow.
+    def refuse_unsafe(self, trajectory: JointTrajectory, label: str) -> None:
+        """Refuse a motion that the controller's configuration or its safety system does not allow.
 
         Raises:
-            RobotError: it does not allow one, or does not answer.
+            RobotError: one does not, or does not answer.
         """
-        refuse_beyond_safety(self._connected().worker, self.name, joints_rad, label)
+        refuse_beyond_safety(self._connected().worker, self.joint_limits, self.name, trajectory, label)
 
     def _connect(self) -> None:
         probe(self._address)
@@ -301,9 +302,7 @@ class UR5Robot:
                 seen = self._look(dashboard)
             raise_if(unreadiness(seen.safety_mode, seen.robot_mode))
             refuse_taken(dashboard, seen, self.name)
-            if must_set_voltage(seen, self._tool, self.name):  # until here nothing was written
-                assert self._tool.voltage_v is not None, "there is one to set"
-                set_tool_voltage(self._address, self._tool.voltage_v)
+            supply_tool(self._address, seen, self._tool, self.name)  # until here nothing was written
             self.controller_version = dashboard.version()
             cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
             is_held = self._tool.holds(seen)
@@ -335,6 +334,7 @@ class UR5Robot:
         refuse_other_model(dashboard, self._arm, self.name)
         if not self.kinematics.checksum:
             self.kinematics = read_kinematics(self._address, self._arm)
+        self.joint_limits = read_joint_limits(self._address)
         seen = glance(self._address)
         refuse_other_arm(seen, self.kinematics.model, self._tool)
         refuse_power_supply(seen, self._tool, self.name)

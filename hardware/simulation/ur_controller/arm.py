@@ -26,6 +26,8 @@ STOP_RAD_S2 = 10.0
 _PACE_PER_S = 5.0
 """How fast a pause, a protective stop or the slider changes the pace: to rest in 0.2 s."""
 _MOVING_RAD_S = 1e-4
+_TOO_FAST = 1.02
+"""A joint that catches up is allowed 1 % more than its limit."""
 
 
 class Arm:
@@ -41,6 +43,7 @@ class Arm:
         is_held: whether a pause or a protective stop keeps the motion from going on.
         stuck: joints (0 to 5) that do not follow.
         safe_rad: (2, 6) the lowest and highest angles that the safety system allows.
+        safe_speeds_rad_s: (6,) the highest speeds that it allows.
     """
 
     def __init__(self, model: ArmModel, joints_rad: npt.ArrayLike) -> None:
@@ -55,6 +58,7 @@ class Arm:
         self.is_held = False
         self.stuck: set[int] = set()
         self.safe_rad = np.array([model.lower_rad, model.upper_rad])
+        self.safe_speeds_rad_s = np.array(model.speed_limits_rad_s)
         self._pace = 1.0
         self._motion: Motion | None = None
         self._next: Callable[[FloatArray], Trajectory] | None = None
@@ -71,8 +75,9 @@ class Arm:
 
     @property
     def is_beyond_safety(self) -> bool:
-        """Whether a joint is where the safety system does not allow it."""
-        return not self.is_safe(self.joints_rad)
+        """Whether a joint is where the safety system does not allow it, or faster."""
+        is_fast = bool((np.abs(self.speeds_rad_s) > _TOO_FAST * self.safe_speeds_rad_s).any())
+        return is_fast or not self.is_safe(self.joints_rad)
 
     def is_safe(self, joints_rad: npt.ArrayLike) -> bool:
         """Whether the safety system allows a configuration (6,)."""

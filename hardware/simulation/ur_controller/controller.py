@@ -91,6 +91,11 @@ class Controller:
         self._stopped_at_s = 0.0
         self._switching: list[tuple[float, RobotMode]] = []
 
+    @property
+    def program_name(self) -> str:
+        """Of the program under way, as the dashboard calls it."""
+        return ControlProgram.name if self._program is None else self._program.name
+
     def step(self) -> None:
         """One cycle."""
         if self.is_frozen:

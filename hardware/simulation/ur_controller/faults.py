@@ -22,6 +22,7 @@
 | `calibration MM` | the forearm is longer by this than the published one, as the primary interface tells |
 | `jump JOINT RAD` | a joint (1 to 6) is elsewhere at once |
 | `limit JOINT LOW HIGH`, `no limits` | the safety system's, in rad; as the arm's own |
+| `fastest JOINT SPEED` | the safety system's, in rad/s; `no limits` as well |
 | `force N` | something pushes at the tool |
 | `dashboard delay SECONDS` | the dashboard hears every line so late |
 | `hand empty`, `hand full` | nothing (any more) between a Robotiq gripper's fingers; something |
@@ -132,6 +133,7 @@ class FaultInjector:
             "calibration": self._miscalibrate,
             "jump": self._jump,
             "limit": self._limit,
+            "fastest": self._limit_speed,
             "force": lambda numbers: setattr(c, "tool_force_n", _one(numbers)),
             "hand fault": lambda numbers: setattr(self._hand, "fault", int(_one(numbers))),
             "pace": self._pace,
@@ -266,9 +268,14 @@ class FaultInjector:
         arm = self._controller.arm
         if not numbers:
             arm.safe_rad = np.array([arm.model.lower_rad, arm.model.upper_rad])
+            arm.safe_speeds_rad_s = np.array(arm.model.speed_limits_rad_s)
             return
         _must(len(numbers) == 3 and numbers[0] in range(1, 7), "a joint from 1 to 6, and two angles")
         arm.safe_rad[:, int(numbers[0]) - 1] = numbers[1:]
+
+    def _limit_speed(self, numbers: list[float]) -> None:
+        _must(len(numbers) == 2 and numbers[0] in range(1, 7), "a joint from 1 to 6, and a speed")
+        self._controller.arm.safe_speeds_rad_s[int(numbers[0]) - 1] = numbers[1]
 
     def _restore(self) -> None:
         self._network.latency_s = self._network.jitter_s = 0.0

@@ -16,9 +16,11 @@ class ForeignProgram:
 
     Attributes:
         is_over: never by itself.
+        name: as the dashboard calls it.
     """
 
     is_over = False
+    name = "weld.urp"
 
     def __init__(self, arm: Arm, is_moving: bool) -> None:
         """Take the arm over: it brakes first."""

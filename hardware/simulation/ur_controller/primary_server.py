@@ -1,7 +1,8 @@
 """The primary interface: who the controller is, and ten times a second a state with its arm's kinematics.
 
 Source: Universal Robots, "Overview of client interfaces". Of a state's many parts those are there that tell
-of the arm: the tool's pose, and the kinematics. Scripts, which the real port takes as well, are not read.
+of the arm: the tool's pose, the kinematics, and what is configured. Scripts, which the real port takes as
+well, are not read.
 """
 
 from __future__ import annotations
@@ -12,13 +13,16 @@ import zlib
 
 from core.motion.arm_models import ArmModel
 from hardware.robots.ur.pose_vectors import vector_from_pose
+from hardware.simulation.ur_controller.arm import Arm
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.identity import MODELS, Identity
 from hardware.simulation.ur_controller.link import Link, Network
 
 _EVERY_S = 0.1
 _ROBOT_STATE, _ROBOT_MESSAGE, _VERSION_MESSAGE = 16, 20, 3
-_CARTESIAN_INFO, _KINEMATICS_INFO = 4, 5
+_CARTESIAN_INFO, _KINEMATICS_INFO, _CONFIGURATION_DATA = 4, 5, 6
+_DEFAULTS = (1.05, 1.4, 0.25, 1.2, 0.0)
+_MOST_RAD_S2 = 40.0
 _PROJECT = b"URControl"
 _FROM_CONTROLLER = -2
 _NOT_CALIBRATED = 0xFFFFFFFF
@@ -52,7 +56,9 @@ class PrimaryLink(Link):
     def _send_state(self) -> None:
         arm = self._controller.arm
         pose = struct.pack(">12d", *arm.tcp_pose(arm.joints_rad), *vector_from_pose(arm.T_flange_tcp))
-        self.send(robot_state(_package(_CARTESIAN_INFO, pose), kinematics_info(arm.model)))
+        self.send(
+            robot_state(_package(_CARTESIAN_INFO, pose), kinematics_info(arm.model), configuration_data(arm))
+        )
         self._next = asyncio.get_running_loop().call_later(_EVERY_S, self._send_state)
 
 
@@ -68,6 +74,15 @@ def kinematics_info(arm: ArmModel) -> bytes:
     checksums = [_NOT_CALIBRATED if is_published else zlib.crc32(struct.pack(">4d", *row)) for row in rows]
     numbers = [number for column in zip(*rows, strict=True) for number in column]
     return _package(_KINEMATICS_INFO, struct.pack(">6I24dI", *checksums, *numbers, _STATUS))
+
+
+def configuration_data(arm: Arm) -> bytes:
+    """The sub-package of what is configured: the range and the highest speed of each joint, among others."""
+    motion = [number for speed in arm.safe_speeds_rad_s for number in (speed, _MOST_RAD_S2)]
+    model = arm.model
+    rows = [*model.a_m, *model.d_m, *model.alpha_rad, *(0.0,) * 6]
+    numbers = [*arm.safe_rad.T.ravel(), *motion, *_DEFAULTS, *rows]
+    return _package(_CONFIGURATION_DATA, struct.pack(">53d4i", *numbers, 0, 0, 0, 0))
 
 
 def version_message(identity: Identity) -> bytes:

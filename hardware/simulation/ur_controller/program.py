@@ -287,7 +287,10 @@ class ControlProgram:
 
     Attributes:
         is_over: whether it has ended by itself.
+        name: as the dashboard calls it: a script that came over the network has none.
     """
+
+    name = "<unnamed>"
 
     def __init__(
         self,

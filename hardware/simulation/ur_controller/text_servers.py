@@ -113,7 +113,7 @@ class DashboardLink(LineLink):
         return f"Program running: {str(self._program_word() == 'PLAYING').lower()}"
 
     def _program_state(self) -> str:
-        return f"{self._program_word()} <unnamed>"
+        return f"{self._program_word()} {self._controller.program_name}"
 
     def _program_word(self) -> str:
         return _PROGRAM_STATES.get(self._controller.runtime_state, "STOPPED")

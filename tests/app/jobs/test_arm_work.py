@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import socket
 import time
 
@@ -273,5 +274,25 @@ def test_what_is_in_the_way_of_connecting_is_named_and_done_step_by_step(arm, ce
             assert pending.step is expected
             step = pending.step
         assert arm.do(ArmWork.connect, rehearsal, step) is None
+        assert arm.status().problem == ""
+        arm.do(ArmWork.disconnect)
+
+
+def test_a_paused_program_of_somebody_else_is_named_before_recovering_ends_it(arm, cell):
+    with ControllerProcess(joints_rad=cell.robot.home_rad, speed_up=4.0) as controller:
+        real = cell.robot.model_copy(update={"kind": "ur5", "address": controller.address})
+        assert arm.do(ArmWork.connect, cell.model_copy(update={"robot": real, "is_rehearsal": True})) is None
+        controller.command("program stop")
+        wait_until(lambda: arm.status().problem)
+        for line in ("foreign still", "program pause"):
+            controller.command(line)
+        wait_until(lambda: json.loads(controller.command("state"))["runtime_state"] == "PAUSED")
+        failed = arm.do(ArmWork.recover)
+        assert failed.kind is FailureKind.EXPLAINED
+        pending = arm.of(StepPending)[-1]
+        assert pending.step is ReadyStep.END_PROGRAM
+        assert "PAUSED weld.urp" in pending.sentence
+        assert json.loads(controller.command("state"))["runtime_state"] == "PAUSED"
+        assert arm.do(ArmWork.recover, pending.step) is None
         assert arm.status().problem == ""
         arm.do(ArmWork.disconnect)

@@ -116,6 +116,7 @@ def test_the_examination_connects_and_moves_nothing() -> None:
         assert finding.value.startswith(f"UR5 at {controller.address}, controller 5.11")
         assert "running, safety normal, its kinematics agree" in finding.value
         assert "calibrated kinematics read (checksum ffffffff-" in finding.value
+        assert "joint limits read" in finding.value
         other = robot_finding(real_at(controller.address, "UR5e"))
         assert "not the UR5e of the cell file" in str(other.problem)
         controller.command("local")

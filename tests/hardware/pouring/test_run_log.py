@@ -1,5 +1,9 @@
 """A run is on the disk as it happens, and is read from there."""
 
+import json
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -40,6 +44,32 @@ def test_an_event_is_on_the_disk_before_the_next_line_runs(tmp_path):
     assert (
         PourRun.load(tmp_path / "0001").sentence == "Stopped during 'carry': The controller stopped the arm."
     )
+
+
+def test_every_event_and_the_name_of_its_file_are_synced_to_the_disk(tmp_path, monkeypatch):
+    """What a power cut leaves is what was synced: the file's content as it was then, and names in folders."""
+    kept, names, sync = {}, set(), os.fsync
+
+    def noted(descriptor):
+        sync(descriptor)
+        path = Path(f"/proc/self/fd/{descriptor}").resolve()
+        if path.is_dir():
+            names.update(path.iterdir())
+        else:
+            kept[path] = path.read_text()
+
+    monkeypatch.setattr(os, "fsync", noted)
+    folder = tmp_path / "session" / "pours" / "0001"
+    (tmp_path / "session").mkdir()
+    events = folder / "events.jsonl"
+    with RunLog(folder) as log:
+        assert {events, folder, folder.parent} <= names
+        for k in range(20):
+            log.event("move", f"move {k}", index=k)
+            lines = kept[events].splitlines()
+            assert [json.loads(line)["index"] for line in lines] == list(range(k + 1))
+        log.stopped(RuntimeError("it broke"), None)
+        assert json.loads(kept[events].splitlines()[-1])["kind"] == "stopped"
 
 
 def test_a_line_that_a_crash_cut_short_hides_nothing_before_it(tmp_path):

@@ -13,6 +13,7 @@ from core.motion.pour.margins import plan_margins
 from core.session.pour_runs import PourRun
 from hardware.cell import CellSettings
 from hardware.cell.scene import pour_cell
+from hardware.driving import slowness
 from hardware.errors import MoveRefused, RobotError, RobotStopped, TrackingLost
 from hardware.pouring.pouring import Pouring
 from tests.awake import within
@@ -165,9 +166,52 @@ def test_a_plan_beyond_the_safety_limits_is_refused_before_anything_moves(rig):
         with pytest.raises(MoveRefused, match="safety limits"):
             rig.pouring.carry_out(fresh)
         assert rig.is_home
+        with pytest.raises(MoveRefused, match="safety limits"):
+            rig.pouring.plan()
+        rig.pouring.recover()  # what is configured is read on connecting
+        with pytest.raises(MoveRefused, match=r"the base joint would be at -?\d+ degrees"):
+            rig.pouring.plan()
     finally:
         rig.controller.command("no limits")
+    rig.pouring.recover()
     pours(rig)
+
+
+@pytest.mark.parametrize(
+    ("line", "refused"),
+    [
+        ("slider 0", "speed slider is at 0, .* raise it at the panel"),
+        ("fastest 1 0.1", r"the base joint would turn at .* allows 0\.10"),
+    ],
+)
+def test_what_the_controller_does_not_allow_is_said_before_anything_is_confirmed(rig, line, refused):
+    rig.controller.command(line)
+    try:
+        rig.pouring.recover()  # what is configured is read on connecting
+        wait_until(lambda: (rig.arm.robot.state().speed_scaling == 0) == (line == "slider 0"))
+        with pytest.raises(RobotError, match=refused):
+            rig.pouring.plan()
+    finally:
+        rig.controller.command("slider 1")
+        rig.controller.command("no limits")
+    rig.pouring.recover()
+    assert rig.pouring.plan() is not None
+
+
+@pytest.mark.parametrize(
+    ("line", "back", "said"), [("slider 0.5", "slider 1", "at 50%"), ("reduced", "normal", "reduced mode")]
+)
+def test_what_makes_the_arm_slow_is_said_before_anything_is_confirmed(rig, line, back, said):
+    warned = []
+    rig.reporter.warn = warned.append
+    rig.controller.command(line)
+    try:
+        wait_until(lambda: slowness(rig.arm.robot.state()))
+        rig.pouring.plan()
+    finally:
+        rig.controller.command(back)
+        wait_until(lambda: not slowness(rig.arm.robot.state()))
+    assert any(said in sentence for sentence in warned), warned
 
 
 def test_the_controller_is_told_what_the_cup_weighs(tmp_path, monkeypatch):

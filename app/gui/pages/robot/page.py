@@ -339,7 +339,7 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
 
     def _primary_text(self, step: Step) -> str:
         pending = self.procedure.pending
-        if step is Step.CONNECT and pending is not None:
+        if step in (Step.CONNECT, Step.STOPPED) and pending is not None:
             return pending.step.value.capitalize()
         texts = {
             Step.EMPTY: "" if self.missing is None else self.missing.button,

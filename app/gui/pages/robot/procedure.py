@@ -44,7 +44,7 @@ class PourProcedure(QObject):
     Attributes:
         planned: the pour that was planned and is shown; none if none is.
         planned_back_off: the return after a stop, the same.
-        pending: what has to be done before the arm can be connected; none if nothing is known to be.
+        pending: what has to be done before the arm can be connected or made ready; none if that is not known.
         run: whose outcome is asked for; none if none is.
         failure: why the last job failed, in a sentence; empty if it did not.
         stopped: why the arm was stopped the last time, until it has come back.
@@ -175,8 +175,10 @@ class PourProcedure(QObject):
     def recover(self) -> None:
         """Make the arm accept moves again; it does not move."""
         title = self.tr("Make the arm ready")
+        pending, self.pending = self.pending, None
+        step = None if pending is None else pending.step
         self._start(
-            Activity.RECOVERING, title, ArmWork.recover, then=self._take_ready, patience_s=_RECOVERING_S
+            Activity.RECOVERING, title, ArmWork.recover, step, then=self._take_ready, patience_s=_RECOVERING_S
         )
 
     def plan_back_off(self) -> None:

@@ -14,6 +14,7 @@ import pytest
 
 from core.motion.arm_models import UR5, UR5E
 from core.motion.kinematics import flange_pose
+from core.motion.trajectory import JointTrajectory
 from hardware.errors import (
     EmergencyStop,
     MoveRefused,
@@ -272,12 +273,31 @@ def test_the_safety_systems_joint_limits_are_asked_for(bench: Bench) -> None:
     bench.controller.command(f"limit 2 {HOME[1] - 0.3} {HOME[1] + 0.3}")
     try:
         inside = HOME + np.linspace(-0.25, 0.25, 25)[:, None] * np.eye(6)[1]
-        bench.robot.refuse_unsafe(inside, "lift")
+        bench.robot.refuse_unsafe(JointTrajectory.of_samples(inside), "lift")
+        beyond = JointTrajectory.of_samples(inside + 0.1 * np.eye(6)[1])
         with pytest.raises(MoveRefused, match=r"In the move 'lift' .* safety limits"):
-            bench.robot.refuse_unsafe(inside + 0.1 * np.eye(6)[1], "lift")
+            bench.robot.refuse_unsafe(beyond, "lift")
         assert bench.robot.stopped_by() is None
     finally:
         bench.controller.command("no limits")
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("limit 2 -1.75 0", r"In the move 'lift' the shoulder joint would be at -106 degrees, .* -100 to 0;"),
+        ("fastest 2 0.2", r"In the move 'lift' the shoulder joint would turn at 0\.25 rad/s, .* 0\.20;"),
+    ],
+)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_ranges_and_speeds_of_joints_are_read_from_the_controller(version: str, line: str, said: str) -> None:
+    up = JointTrajectory.of_samples(HOME - np.linspace(0, 0.25, 126)[:, None] * np.eye(6)[1])
+    with ControllerProcess(version=version, joints_rad=HOME, faults=[line]) as controller:
+        with driver(controller.address) as robot, pytest.raises(MoveRefused, match=said):
+            robot.refuse_unsafe(up, "lift")
+        controller.command("no limits")
+        with driver(controller.address) as robot:
+            robot.refuse_unsafe(up, "lift")
 
 
 @pytest.mark.parametrize(
@@ -317,3 +337,29 @@ def test_a_foreign_program_is_not_ended_by_recovering(bench: Bench) -> None:
     bench.robot.take_step(ReadyStep.END_PROGRAM)
     bench.robot.recover()
     bench.works_again()
+
+
+@pytest.mark.parametrize("fault", ["foreign still", "foreign moving"])
+def test_a_foreign_program_that_is_paused_is_asked_about_too(bench: Bench, fault: str) -> None:
+    bench.robot.stop()
+    bench.controller.command(fault)
+    bench.controller.command("program pause")
+    wait_until(lambda: bench.truth()["runtime_state"] == "PAUSED")
+    with pytest.raises(RobotNotReady, match=r"A program is paused .*PAUSED weld\.urp"):
+        bench.robot.recover()
+    assert bench.truth()["runtime_state"] == "PAUSED"
+    step, why = bench.robot.pending_step()
+    assert step is ReadyStep.END_PROGRAM
+    assert "PAUSED weld.urp" in why
+    assert "cannot go on" in why
+    bench.robot.take_step(step)
+    wait_until(lambda: bench.truth()["runtime_state"] == "STOPPED")
+    bench.robot.recover()
+    bench.works_again()
+
+
+def test_our_own_program_that_the_controller_paused_is_not_asked_about(fast_bench: Bench) -> None:
+    fast_bench.controller.command("protective stop")
+    wait_until(lambda: fast_bench.robot.stopped_by() is not None)
+    fast_bench.robot.recover()
+    fast_bench.works_again()

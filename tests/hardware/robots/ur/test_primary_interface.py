@@ -17,17 +17,25 @@ from core.errors import MotionError
 from core.motion.arm_models import UR5, UR5E
 from core.motion.factory_calibration import calibrated
 from core.motion.kinematics import flange_pose
+from hardware.robots.ur.joint_limits import read_joint_limits
 from hardware.robots.ur.own_kinematics import read_kinematics
 from hardware.robots.ur.primary_interface import (
     PRIMARY_PORT,
     ROBOT_STATE,
     DamagedPackage,
+    configuration_of,
     kinematics_of,
     next_package,
     receive_kinematics,
 )
+from hardware.simulation.ur_controller.arm import Arm
 from hardware.simulation.ur_controller.identity import identity
-from hardware.simulation.ur_controller.primary_server import kinematics_info, robot_state, version_message
+from hardware.simulation.ur_controller.primary_server import (
+    configuration_data,
+    kinematics_info,
+    robot_state,
+    version_message,
+)
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import within
 from tests.fuzz.mutation import damaged_bytes
@@ -97,7 +105,7 @@ def test_numbers_that_are_none_are_refused(value: float) -> None:
 @pytest.mark.filterwarnings("error")
 def test_damaged_bytes_are_refused_or_close_to_what_was_sent() -> None:
     sound = version_message(identity("UR5", "3.15")) + robot_state(
-        package(0, bytes(42)), kinematics_info(UR5)
+        package(0, bytes(42)), configuration_data(Arm(UR5, JOINTS)), kinematics_info(UR5)
     )
     for seed in range(2000):
         pick = Random(seed)
@@ -105,6 +113,8 @@ def test_damaged_bytes_are_refused_or_close_to_what_was_sent() -> None:
         with suppress(DamagedPackage, MotionError):
             while (found := next_package(rest)) is not None:
                 kind, content, rest = found
+                if kind == ROBOT_STATE:
+                    configuration_of(content)
                 measured = kinematics_of(content) if kind == ROBOT_STATE else None
                 if measured is not None:
                     apart = flange_pose(calibrated(UR5, measured), JOINTS) - flange_pose(UR5, JOINTS)
@@ -120,6 +130,30 @@ def test_the_simulated_controller_serves_them_as_real_ones_do() -> None:
     assert found is not None
     assert (found.a_m, found.d_m, found.alpha_rad) == (UR5E.a_m, UR5E.d_m, UR5E.alpha_rad)
     assert set(found.checksum) == {0xFFFFFFFF}, "as an arm that was never calibrated"
+
+
+def test_what_is_configured_is_found_among_other_parts() -> None:
+    arm = Arm(UR5, JOINTS)
+    arm.safe_rad[:, 2], arm.safe_speeds_rad_s[2] = (-2.5, 2.0), 1.5
+    data = configuration_data(arm)
+    assert len(data) == 445, "as a real one is"
+    found = configuration_of(package(0, bytes(42)) + kinematics_info(UR5) + data)
+    assert found is not None
+    assert (found[4:6], found[16]) == ((-2.5, 2.0), 1.5)
+    assert configuration_of(kinematics_info(UR5)) is None
+    with pytest.raises(DamagedPackage, match="cut off"):
+        configuration_of(package(6, data[5:-1]))
+
+
+@pytest.mark.parametrize(
+    "numbers", [(float("nan"),) * 24, (1.0, -1.0) * 12, (-1.0, 1.0) * 6 + (0.0, 1.0) * 6]
+)
+def test_limits_that_cannot_be_are_none(numbers: tuple[float, ...]) -> None:
+    data = package(6, struct.pack(">53d4i", *numbers, *(0.0,) * 29, 0, 0, 0, 0))
+    with serving(robot_state(data), then_silent=True):
+        assert read_joint_limits(ADDRESS) is None
+    with serving(robot_state(configuration_data(Arm(UR5, JOINTS))), then_silent=True):
+        assert read_joint_limits(ADDRESS) is not None
 
 
 @contextmanager

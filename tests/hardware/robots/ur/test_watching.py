@@ -74,6 +74,28 @@ def test_a_jump_beyond_the_plans_margin_is_noticed(bench: Bench, angle_rad: floa
     bench.works_again()
 
 
+@pytest.mark.parametrize("under_way_rad_s", [0.15, 0.8])
+def test_a_program_that_stands_is_noticed_early_in_a_move_too(
+    either_bench: Bench, under_way_rad_s: float
+) -> None:
+    move = either_bench.robot.follow(long_way(either_bench.joints()), margin(0.004))
+    wait_until(lambda: np.abs(either_bench.truth()["speeds_rad_s"]).max() > under_way_rad_s)
+    with within(STOPPED_WITHIN_S):
+        either_bench.controller.command("foreign still")
+        with pytest.raises(TrackingLost):
+            move.wait(5)
+    wait_until(lambda: either_bench.truth()["runtime_state"] == "STOPPED", 1)
+    either_bench.works_again()
+
+
+@pytest.mark.parametrize("latency", ["latency 5 5", "latency 40 30", "latency 70 20"])
+def test_a_late_arm_is_not_taken_for_one_that_stands(bench: Bench, latency: str) -> None:
+    bench.robot.follow(long_way(bench.joints()), margin(0.01)).wait(20)  # a quick link's lag is known then
+    bench.controller.command(latency)
+    bench.robot.follow(long_way(HOME).reversed()).wait(20)
+    bench.robot.follow(long_way(bench.joints())).wait(20)
+
+
 def test_a_plan_with_little_margin_is_followed_to_its_end(either_bench: Bench) -> None:
     either_bench.robot.follow(long_way(either_bench.joints()), margin(0.001)).wait(20)
 
