@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from core.geometry import FloatArray
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.pour.cell import MotionSettings
+from core.parameters.bodies import CupParameters
 from core.parameters.fields import OURS, Group, choice, declaration, quantity
 from core.scan.model import CropBox, Intrinsics
 from hardware.cell.gripper_settings import (
@@ -262,6 +263,7 @@ class CellSettings(Group):
     camera: CameraSettings
     robot: RobotSettings
     gripper: GripperSettings = GripperSettings()
+    cup: CupParameters | None = Field(None, exclude_if=lambda given: given is None)
     place: PlaceSettings
     motion: MotionSettings = MotionSettings()
     obstacles: tuple[BoxSettings, ...] = ()

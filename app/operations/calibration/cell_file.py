@@ -127,6 +127,25 @@ def write_views(path: Path, views_rad: Sequence[Sequence[float]]) -> None:
     _changed(path, change)
 
 
+def write_cup(path: Path, values: dict[str, Any]) -> None:
+    """Put other values of `place`, `gripper` and `cup`, by section, into a cell's file; see `write_hand_eye`.
+
+    A section that is none is taken out.
+    """
+
+    def change(document: tomlkit.TOMLDocument) -> None:
+        for section, table in values.items():
+            if table is None:
+                document.pop(section, None)
+                continue
+            if section not in document:
+                document[section] = tomlkit.table()
+            for name, value in table.items():
+                _table(document, section)[name] = value
+
+    _changed(path, change)
+
+
 def _changed(path: Path, change: Callable[[tomlkit.TOMLDocument], None]) -> None:
     before = read_content(path)
     try:

@@ -58,7 +58,7 @@ def test_a_cell_is_made_and_its_steps_are_listed(poursight, cells):
     code, out, _ = poursight("cell", "show", "bench-one")
     assert code == 0
     rows = [line.split()[:2] for line in out.splitlines()[1:]]
-    names = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference"]
+    names = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
     assert [name for name, _ in rows] == names
     assert {state for _, state in rows} == {"open"}
     assert poursight("cell", "show", cells / "bench-one.toml")[0] == 0
@@ -96,6 +96,11 @@ def test_a_board_is_printed_measured_and_undone(poursight, cells):
         (("board", "bench", "--dictionary=7X7"), "dictionary"),
         (("board", "bench", "--columns=60"), "take 4 to 20 each way"),
         (("board", "bench", "--measured-mm=-3"), "enter 5 to 200 mm"),
+        (("cup", "bench", "--taught"), "nobody can guide it"),
+        (("cup", "bench", "--taught", "--station-mm", "0", "0", "0"), "either taught or typed"),
+        (("cup", "bench", "--base-mm=90"), "wider at its base"),
+        (("cup", "bench", "--station-mm", "900", "900", "15"), "cannot reach the cup"),
+        (("dry-run", "bench", "--yes"), "No cup was entered"),
         *(
             ((command, "bench", "--undo"), f"The step '{step}' of")
             for command, step in (
@@ -105,6 +110,8 @@ def test_a_board_is_printed_measured_and_undone(poursight, cells):
                 ("table", "table"),
                 ("views", "views"),
                 ("reference", "reference"),
+                ("cup", "cup"),
+                ("dry-run", "dry-run"),
             )
         ),
     ],
