@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
+from core.calibration.depth_plane import MOST_RMS_SHARE, DepthPlane, find_plane
 from core.errors import PoursightError
 from core.geometry import FloatArray
 from core.motion.joint_path import check_path
@@ -105,8 +106,26 @@ def examine_camera(settings: CellSettings) -> Finding:
     share = float((image.depth_m > 0).mean())
     height, width = image.depth_m.shape
     value = f"{camera.name}, {width} x {height}, depth in {share:.0%} of the pixels"
-    blind = None if share > 0 else "It gives no depth at all; check its projector and what it looks at."
-    return Finding("camera", value, blind)
+    if share == 0:
+        return Finding("camera", value, "It gives no depth at all; check its projector and what it looks at.")
+    return Finding("camera", *_with_plane(value, find_plane(image.depth_m, image.intrinsics)))
+
+
+def _with_plane(value: str, plane: DepthPlane | None) -> tuple[str, str | None]:
+    """What the camera is with how true its depth is, and what to do if it is not."""
+    if plane is None or not plane.is_flat:
+        return f"{value}; look at a flat surface from the distance of a scan to see how true it is", None
+    said = (
+        f"{value}, within {1000 * plane.rms_m:.1f} mm (RMS) of a plane at {plane.distance_m:.2f} m, "
+        f"seen at {np.degrees(plane.tilt_rad):.0f} degrees"
+    )
+    if plane.is_true:
+        return said, None
+    return said, (
+        f"Its depth is {1000 * plane.rms_m:.1f} mm (RMS) off a plane at {plane.distance_m:.2f} m, and "
+        f"{1000 * MOST_RMS_SHARE * plane.distance_m:.1f} mm are allowed; clean its windows, keep sunlight "
+        "and shiny surfaces out of sight, and calibrate its depth as its maker says."
+    )
 
 
 def _camera_of(settings: CellSettings) -> Camera:
