@@ -15,6 +15,7 @@ from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose
 from hardware.cell.cell import open_cell
 from hardware.cell.devices import real_arm, real_camera, robotiq_address
+from hardware.cell.own_arm import why_other_arm
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import ARMS, CellSettings
 from hardware.grippers.robotiq_line import Contact, RobotiqLine, refuse_faulty
@@ -63,7 +64,7 @@ def examine_robot(settings: CellSettings) -> Finding:
     said = f"{said}, {_kinematics_read(arm.kinematics)}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
-    return Finding("robot", said, problem)
+    return Finding("robot", said, problem or why_other_arm(settings, arm.kinematics) or None)
 
 
 def examine_gripper(settings: CellSettings) -> Finding:

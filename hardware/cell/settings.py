@@ -97,6 +97,10 @@ class RobotSettings(Group):
     )
     address: str | None = choice(None, "ur5: the controller's address in the network.", source=CELL)
     model: Literal["UR5", "UR5e"] = choice("UR5", "The arm's model.", source=CELL)
+    kinematics_checksum: str | None = choice(
+        None, "Of the arm's own kinematics, with which the cell was calibrated; none: not known.",
+        source=CELL, is_written=False,
+    )  # fmt: skip
     home_rad: Joints = choice(..., "Where the arm rests, clear of everything.", source=CELL)
     joint_speed_rad_s: float = quantity(
         0.8, "Speed of the fastest joint while scanning.", unit="rad/s", source=OURS, low=0.01, high=pi

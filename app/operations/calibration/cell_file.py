@@ -94,8 +94,13 @@ def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None =
     return path
 
 
-def write_hand_eye(path: Path, T_flange_camera: FloatArray) -> None:
+def write_hand_eye(path: Path, T_flange_camera: FloatArray, kinematics: str = "") -> None:
     """Put another hand-eye pose (4, 4) into a cell's file; all else in it stays, comments too.
+
+    Args:
+        path: of the file.
+        T_flange_camera: the pose.
+        kinematics: checksum of the arm's own kinematics by which it was found; empty: not known.
 
     Raises:
         InputError: the file cannot be read, or would be no cell any more; it stays as it was.
@@ -104,6 +109,11 @@ def write_hand_eye(path: Path, T_flange_camera: FloatArray) -> None:
 
     def change(document: tomlkit.TOMLDocument) -> None:
         _table(document, "camera")["T_flange_camera"] = _matrix(T_flange_camera)
+        robot = _table(document, "robot")
+        if kinematics:
+            robot["kinematics_checksum"] = kinematics
+        else:
+            robot.pop("kinematics_checksum", None)
 
     _changed(path, change)
 

@@ -21,7 +21,7 @@ from core.progress import Reporter
 from core.session import explained
 from core.workers import RunHere
 from hardware.cell import CellSettings, read_cell
-from hardware.cell.guiding import own_kinematics
+from hardware.cell.own_arm import own_kinematics
 from hardware.cell.scene import pour_cell
 
 

@@ -13,7 +13,7 @@ from core.errors import InputError, MotionError
 from core.motion.pour.teaching import taught_station_m
 from core.parameters.bodies import CupParameters
 from hardware.cell import CellSettings, read_cell
-from hardware.cell.guiding import guided_joints_rad, own_kinematics
+from hardware.cell.own_arm import guided_joints_rad, own_kinematics
 
 DIGITS = 4
 """Places are written to a tenth of a millimetre."""

@@ -1,4 +1,4 @@
-"""Reading where an arm was guided to by hand, and its own kinematics, without connecting or moving it."""
+"""The very arm that stands in a cell: its own kinematics, and where it was guided to. Nothing moves."""
 
 from __future__ import annotations
 
@@ -19,6 +19,23 @@ def own_kinematics(settings: CellSettings) -> Kinematics:
     if not settings.robot.is_real:
         return Kinematics(published)
     return read_kinematics(_address(settings), published)
+
+
+def why_other_arm(settings: CellSettings, kinematics: Kinematics) -> str:
+    """Say that the arm that is there is not the one with which the cell was calibrated; empty if it may be.
+
+    Args:
+        settings: of the cell.
+        kinematics: of the arm that is there.
+    """
+    known, found = settings.robot.kinematics_checksum, kinematics.checksum
+    if known is None or not found or known == found:
+        return ""
+    return (
+        f"The arm is not the one with which the {settings.name} was calibrated, or was measured anew by its "
+        f"maker (kinematics {found}, before {known}), so objects may be seen 1 to 3 mm beside their place; "
+        "calibrate the cell again."
+    )
 
 
 def guided_joints_rad(settings: CellSettings) -> FloatArray:
