@@ -36,7 +36,10 @@ def cup(
     entry = cup_entry.CupEntry(station_m, cup_entry.changed_cup(held.cup, measures_mm), payload_kg, cup_kg)
     with TerminalReporter() as terminal:
         found = entering.enter_cup(path, entry, terminal)
-    print(f"{found.sentence[:1].upper()}{found.sentence[1:]}.\nNext: poursight cell dry-run {name}")
+    print(f"{found.sentence[:1].upper()}{found.sentence[1:]}.")
+    if found.reason:
+        print(f"From others: {found.reason}")
+    print(f"Next: poursight cell dry-run {name}")
 
 
 def dry_run(name: str, is_confirmed: bool) -> None:

@@ -31,11 +31,13 @@ class CupFound:
 
     Attributes:
         folder: with the record.
-        sentence: from how many sides the arm can pour, and what is in the way from the others.
+        sentence: from how many sides the arm can pour.
+        reason: what is in the way from the others; empty if there are none.
     """
 
     folder: Path
     sentence: str
+    reason: str
 
 
 def enter_cup(cell_file: Path, entry: CupEntry, reporter: Reporter) -> CupFound:
@@ -69,7 +71,8 @@ def enter_cup(cell_file: Path, entry: CupEntry, reporter: Reporter) -> CupFound:
     said = _sentence(entered, reach)
     folder = new_run(cell_file, step_names.CUP)
     result = {
-        "time": now(), "said": said, "before": before, "after": after, "for": reach_is_for(entered),
+        "time": now(), "said": said, "others": reach.reason, "before": before, "after": after,
+        "for": reach_is_for(entered),
         "versions": versions(),
     }  # fmt: skip
     with explained(folder):
@@ -79,7 +82,7 @@ def enter_cup(cell_file: Path, entry: CupEntry, reporter: Reporter) -> CupFound:
     except PoursightError:
         withdraw(folder)
         raise
-    return CupFound(folder, said)
+    return CupFound(folder, said, reach.reason)
 
 
 def reach_of(settings: CellSettings, reporter: Reporter) -> PourReach:
@@ -115,15 +118,8 @@ def _with_entry(settings: CellSettings, entry: CupEntry) -> CellSettings:
 
 def _sentence(settings: CellSettings, reach: PourReach) -> str:
     cup, station = reach.pouring.cup, 1000 * np.array(settings.place.cup_station_m)
-    said = (
-        f"a cup of {1000 * cup.length_m:.0f} mm, {2000 * cup.mouth_radius_m:.0f} mm wide, at "
-        f"({station[0]:.0f}, {station[1]:.0f}, {station[2]:.0f}) mm; the arm takes it, and pours into a bowl "
-        f"in the middle of the platform from {reach.n_reached} of {reach.n_sides} sides"
-    )
     return (
-        said if reach.n_reached == reach.n_sides else f"{said}; from others: {_uncapitalized(reach.reason)}"
+        f"the arm takes it, and pours from {reach.n_reached} of {reach.n_sides} sides; "
+        f"{1000 * cup.length_m:.0f} mm long, {2000 * cup.mouth_radius_m:.0f} mm wide, at "
+        f"({station[0]:.0f}, {station[1]:.0f}, {station[2]:.0f}) mm"
     )
-
-
-def _uncapitalized(sentence: str) -> str:
-    return (sentence[:1].lower() + sentence[1:]).rstrip(".")

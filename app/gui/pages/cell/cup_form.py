@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QFormLayout, QPushButton, QWidget
 
 from app.gui.pages.layouts import row_of
 from app.gui.theme import GRID_PX
@@ -12,6 +12,8 @@ from core.parameters.bodies import CupParameters
 
 MM = 1000.0
 _REACH_MM = 2000.0
+_BOX_PX = 62
+"""Three of them beside a title are as wide as the panel."""
 
 
 class CupForm(QWidget):
@@ -25,13 +27,10 @@ class CupForm(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._shown: CupEntry | None = None
-        self._station = [_box(f"station_{axis}", -_REACH_MM, _REACH_MM, " mm", 1) for axis in "xyz"]
-        self._length, self._mouth = (
-            _box("cup_length", 20, 400, " mm", 1),
-            _box("cup_mouth", 20, 400, " mm", 1),
-        )
-        self._base, self._wall = _box("cup_base", 5, 400, " mm", 1), _box("cup_wall", 0.5, 20, " mm", 1)
-        self._payload, self._cup_kg = _box("payload", 0, 5, " kg", 2), _box("cup_mass", 0, 5, " kg", 2)
+        self._station = [_box(f"station_{axis}", -_REACH_MM, _REACH_MM, 1) for axis in "xyz"]
+        self._length, self._wall = _box("cup_length", 20, 400, 1), _box("cup_wall", 0.5, 20, 1)
+        self._mouth, self._base = _box("cup_mouth", 20, 400, 1), _box("cup_base", 5, 400, 1)
+        self._payload, self._cup_kg = _box("payload", 0, 5, 2), _box("cup_mass", 0, 5, 2)
         self.read = QPushButton(self.tr("Read from the arm"))
         self.read.setObjectName("read_station")
         self.read.setToolTip(
@@ -41,11 +40,18 @@ class CupForm(QWidget):
         form = QFormLayout(self)
         form.setContentsMargins(0, 0, 0, 0)
         form.setSpacing(GRID_PX)
-        form.addRow(self.tr("Foot at x, y"), row_of(*self._station[:2]))
-        form.addRow(self.tr("Foot at z"), row_of(self._station[2], self.read))
-        form.addRow(self.tr("Length, wall"), row_of(self._length, self._wall))
-        form.addRow(self.tr("Mouth, base"), row_of(self._mouth, self._base))
-        form.addRow(self.tr("At the flange, full cup"), row_of(self._payload, self._cup_kg))
+        for title, boxes in (
+            (self.tr("Foot: x, y, z in mm"), self._station),
+            (self.tr("Length, wall in mm"), [self._length, self._wall]),
+            (self.tr("Mouth, base in mm"), [self._mouth, self._base]),
+            (self.tr("All, full cup in kg"), [self._payload, self._cup_kg]),
+        ):
+            for box in boxes:
+                box.setAccessibleName(title)
+            form.addRow(title, row_of(*boxes))
+        form.addRow("", row_of(self.read))
+        self._payload.setToolTip(self.tr("All that hangs at the flange: gripper, camera and full cup"))
+        self._cup_kg.setToolTip(self.tr("Of that the full cup; 0: the arm is not told when it holds one"))
 
     def show_entry(self, entry: CupEntry, can_read: bool) -> None:
         """Show what the file has; what was typed stays as long as the file is the same."""
@@ -83,10 +89,11 @@ class CupForm(QWidget):
         return CupEntry((x, y, z), cup, self._payload.value(), self._cup_kg.value())
 
 
-def _box(name: str, least: float, most: float, unit: str, decimals: int) -> QDoubleSpinBox:
+def _box(name: str, least: float, most: float, decimals: int) -> QDoubleSpinBox:
     box = QDoubleSpinBox()
+    box.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
+    box.setFixedWidth(_BOX_PX)
     box.setObjectName(name)
     box.setRange(least, most)
     box.setDecimals(decimals)
-    box.setSuffix(unit)
     return box

@@ -148,8 +148,8 @@ def _what(step: str) -> str:
         ),
         step_names.CUP: translate(
             "CellPage",
-            "Where the standing cup’s foot is, how large the cup is, and what the hand carries. Whether the "
-            "arm can take it and pour is seen at once. Nothing moves.",
+            "Where the cup’s foot stands, its size, and the masses. Whether the arm can take it and pour is "
+            "seen at once. Nothing moves.",
         ),
         step_names.DRY_RUN: translate(
             "CellPage",
