@@ -23,7 +23,10 @@ from app.gui.pages.welcome.pictures import FOLDER, PIXEL_RATIO, SIZE_PX
 from app.library.places import SESSIONS_VARIABLE
 from app.operations.calibration.cell_file import CELLS_VARIABLE, known_cells, new_cell
 from app.operations.calibration.check import check_cell
+from app.operations.calibration.cup import enter_cup
+from app.operations.calibration.cup_entry import entry_of
 from app.operations.calibration.devices import examine_device
+from app.operations.calibration.dry_run import dry_run
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.reference import store_reference
 from app.operations.calibration.steps import enter_board
@@ -33,6 +36,7 @@ from core.calibration.board import BoardSpec
 from core.mesh_file import write_mesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
+from hardware.cell import read_cell
 from hardware.simulation.objects import builtin_object
 from tests.app.sessions import make_poured_session, make_session
 
@@ -133,6 +137,8 @@ def _make_cell() -> None:
     measure_table(path, Reporter(), None, lambda: None)
     choose_views(path, Reporter())
     store_reference(path, Reporter(), None, lambda: None)
+    enter_cup(path, entry_of(read_cell(path)), Reporter())
+    dry_run(path, Reporter(), None)
 
 
 def _picture_cell(walk: Walk, path: Path) -> None:

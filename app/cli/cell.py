@@ -9,13 +9,22 @@ import typer
 from app.cli.options import given_word
 
 cell = typer.Typer(
-    help="A cell from a bare table: devices, board, calibration, check, table, views.", rich_markup_mode=None
+    help="A cell from a bare table: devices, board, calibration, places, views, cup, dry run.",
+    rich_markup_mode=None,
 )
 
 NameArgument = Annotated[
     str, typer.Argument(metavar="NAME|FILE", help="A cell's name, or its file.", parser=given_word)
 ]
 YesOption = Annotated[bool, typer.Option("--yes", help="Let a real arm move without asking.")]
+# fmt: off
+LengthOption = Annotated[Optional[float], typer.Option("--length-mm", help="From base to mouth, outside.")]  # noqa: UP045
+MouthOption = Annotated[Optional[float], typer.Option("--mouth-mm", help="Outer diameter of the mouth.")]  # noqa: UP045
+BaseOption = Annotated[Optional[float], typer.Option("--base-mm", help="Outer diameter of the base.")]  # noqa: UP045
+WallOption = Annotated[Optional[float], typer.Option("--wall-mm", help="Thickness of wall and base.")]  # noqa: UP045
+PayloadOption = Annotated[Optional[float], typer.Option("--payload-kg", help="Gripper, camera, full cup.")]  # noqa: UP045
+CupOption = Annotated[Optional[float], typer.Option("--cup-kg", help="Of that the full cup.")]  # noqa: UP045
+# fmt: on
 
 
 @cell.command()
@@ -149,6 +158,51 @@ def reference(
         cell_commands.undo(name, "reference")
     else:
         cell_commands.reference(name, yes)
+
+
+@cell.command()
+def cup(
+    name: NameArgument,
+    taught: Annotated[
+        bool, typer.Option("--taught", help="The hand holds the standing cup, guided there: read its place.")
+    ] = False,
+    station_mm: Annotated[
+        Optional[tuple[float, float, float]],  # noqa: UP045
+        typer.Option(
+            "--station-mm", metavar="X Y Z", help="Middle of the cup's foot, in the arm's base frame."
+        ),
+    ] = None,
+    length_mm: LengthOption = None,
+    mouth_mm: MouthOption = None,
+    base_mm: BaseOption = None,
+    wall_mm: WallOption = None,
+    payload_kg: PayloadOption = None,
+    cup_kg: CupOption = None,
+    undo: Annotated[bool, typer.Option("--undo", help="Put back what was there before.")] = False,
+) -> None:
+    """Enter the cup, where it stands and what it weighs; whether the arm can pour with it is seen at once."""
+    from app.cli import cell_commands, cell_cup
+
+    if undo:
+        cell_commands.undo(name, "cup")
+    else:
+        measures = (length_mm, mouth_mm, base_mm, wall_mm)
+        cell_cup.cup(name, taught, station_mm, measures, (payload_kg, cup_kg))
+
+
+@cell.command("dry-run")
+def dry_run(
+    name: NameArgument,
+    undo: Annotated[bool, typer.Option("--undo", help="Let the last dry run count no more.")] = False,
+    yes: YesOption = False,
+) -> None:
+    """Let the arm go through a whole pour with an empty cup, slowly, each move confirmed."""
+    from app.cli import cell_commands, cell_cup
+
+    if undo:
+        cell_commands.undo(name, "dry-run")
+    else:
+        cell_cup.dry_run(name, yes)
 
 
 @cell.command()

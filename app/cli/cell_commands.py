@@ -21,7 +21,7 @@ from app.operations.calibration.capture import CaptureObserver
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.errors import Cancelled, InputError
-from hardware.cell import read_cell
+from hardware.cell import CellSettings, read_cell
 
 MM = 1000.0
 _UNDONE = {
@@ -30,6 +30,8 @@ _UNDONE = {
     step_names.CHECK: "The last check counts no more.",
     step_names.TABLE: "Platform, crop box and table in {file} are where they were before.",
     step_names.VIEWS: "The views in {file} are those from before.",
+    step_names.CUP: "The cup in {file} is the one from before.",
+    step_names.DRY_RUN: "The last dry run counts no more.",
     step_names.REFERENCE: "The reference view is removed; scans begin without it.",
 }
 
@@ -148,7 +150,7 @@ def views(name: str, n_views: int) -> None:
     path = _path(name)
     with TerminalReporter() as terminal:
         print(choosing_views.choose_views(path, terminal, n_views).sentence)
-    print(f"Next: poursight scan --session DIR --cell {path}")
+    print(f"Next: poursight cell cup {name}")
 
 
 def reference(name: str, is_confirmed: bool) -> None:
@@ -175,6 +177,12 @@ def show(name: str) -> None:
     print(f"{settings.name}{' (SIMULATED)' if settings.is_simulated else ''}: {path}")
     for step in steps.steps(path):
         print(f"{step.name:<10}{step.state.value:<8}{step.time:<27}{step.figure}")
+
+
+def cell_of_name(name: str) -> tuple[Path, CellSettings]:
+    """Return a cell's file, and what it says."""
+    path = _path(name)
+    return path, read_cell(path)
 
 
 def _path(name: str) -> Path:

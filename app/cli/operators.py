@@ -67,6 +67,9 @@ class PrintingOperator:
     def backed_off(self) -> None:
         """Never: a stopped run has ended."""
 
+    def confirm_move(self, move: PlannedMove) -> None:
+        """Nobody is asked."""
+
     def counted(self, cup: Cup) -> Outcome | None:  # noqa: ARG002
         """Say how to enter it later."""
         print(f"Count the spilled candies: poursight outcome {self._session} --spilled N")
@@ -140,6 +143,10 @@ class TerminalOperator(PrintingOperator):
         seconds = sum(move.trajectory.duration_s for move in moves)
         names = ", ".join(move.label for move in moves)
         self._confirm(f"Back off along the checked path ({names}; {seconds:.0f} s)?")
+
+    def confirm_move(self, move: PlannedMove) -> None:
+        """Name the next move of a dry run, and ask."""
+        self._confirm(f"Next: {move.label} ({move.trajectory.duration_s:.0f} s). Go on?")
 
     def backed_off(self) -> None:
         """Say what to see to."""

@@ -81,7 +81,7 @@ class ArmWork(Service):
             except Cancelled:
                 arm.__exit__(None, None, None)
                 raise
-            warn_of_kinematics(arm.robot, reporter)
+            warn_of_kinematics(arm, reporter)
             self._connected = ConnectedArm(arm, lambda payload: self._send(Event(payload)))
 
     def disconnect(self, reporter: JobReporter) -> None:

@@ -15,9 +15,12 @@ from app.jobs.service import JobReporter
 
 if TYPE_CHECKING:
     from app.operations.calibration.capture import CaptureObserver
+    from app.operations.calibration.cup_entry import CupEntry
     from core.calibration.collecting import Look
     from core.calibration.proposing import Proposal
     from core.geometry import FloatArray
+    from core.motion.pour.plan import PlannedMove, PourPlan
+    from core.session.cups import Cup
     from hardware.cell.settings import CellSettings
     from hardware.interfaces import CameraImage
 
@@ -89,6 +92,26 @@ class CellWork(ScanWork):
 
         choose_views(cell_file, reporter, n_views)
 
+    def enter_cup(self, reporter: JobReporter, cell_file: Path, entry: CupEntry) -> None:
+        """Enter the cup; see `app.operations.calibration.cup.enter_cup`."""
+        from app.operations.calibration.cup import enter_cup
+
+        enter_cup(cell_file, entry, reporter)
+
+    def dry_run(self, reporter: JobReporter, cell_file: Path) -> None:
+        """Let the arm go through a pour with an empty cup; publishes the events of `arm_events`.
+
+        Raises:
+            PoursightError: see `app.operations.calibration.dry_run.dry_run`.
+        """
+        from app.operations.calibration.dry_run import dry_run
+        from hardware.cell import read_cell
+
+        progress = ScanReporter(reporter.publish, read_cell(cell_file))
+        with self._under_way(reporter) as running:
+            opened = partial(watched_cell, running, progress)
+            dry_run(cell_file, reporter, PouringOperator(running), opened)
+
     def _look(
         self,
         reporter: JobReporter,
@@ -106,6 +129,42 @@ class CellWork(ScanWork):
             opened = partial(watched_cell, running, progress)
             observer = CaptureObserver(opened, looks.planned, looks.taken, is_watching=True)
             work(PausingOperator(running), observer)
+
+
+class PouringOperator(PausingOperator):
+    """Asks what a dry run asks: Cancel ends it, with the arm at rest where it is."""
+
+    def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:  # noqa: ARG002
+        """Publish how long it takes, and wait."""
+        self.ask(
+            f"Is the platform empty, and the empty cup on its station? The {robot} makes "
+            f"{len(plan.moves)} moves in {plan.duration_s:.0f} s, and waits for your word before each."
+        )
+
+    def confirm_move(self, move: PlannedMove) -> None:
+        """Publish which move is next, and wait."""
+        self.ask(f"Next: {move.label}, {move.trajectory.duration_s:.0f} s.")
+
+    def is_cup_in_hand(self, known: str) -> bool:
+        """Publish what is known, and wait."""
+        self.ask(
+            f"The gripper is closed. {known} If the hand holds the cup as that run did, it is brought back."
+        )
+        return True
+
+    def confirm_opening(self, gripper: str, known: str) -> None:
+        """Publish what is known, and wait."""
+        self.ask(
+            f"{known} Hold what is in the hand of the {gripper}: it opens where the arm stands.".lstrip()
+        )
+
+    def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
+        """Publish the moves, and wait."""
+        names = ", ".join(move.label for move in moves)
+        self.ask(f"The arm backs off along its checked path, and puts the cup back ({names}).")
+
+    def backed_off(self) -> None:
+        """The next dry run is planned and confirmed anew."""
 
 
 class _LookReporter:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from core.geometry import FloatArray
     from core.reconstruction.tsdf import TsdfVolume
     from core.scan.model import RgbdFrame
-    from hardware.cell import Cell, CellSettings
+    from hardware.cell import Arm, Cell, CellSettings
     from hardware.interfaces import ReadyStep, Robot
     from hardware.scanning.procedure import ScanControl
     from hardware.scanning.route import ScanRoute
@@ -167,7 +167,7 @@ class ScanWork(Service):
 
 
 @contextmanager
-def watched_cell(running: Running, progress: ScanReporter, cell: Cell) -> Iterator[None]:
+def watched_cell(running: Running, progress: ScanReporter, cell: Cell | Arm) -> Iterator[None]:
     """A cell's devices are connected: its arm is shown, and can be stopped."""
     running.robot = cell.robot
     try:
@@ -239,7 +239,7 @@ class ScanReporter:
         self._next_mesh_s = now_s + max(_MESH_S, (now_s - began_s) / _MESH_SHARE)
 
     @contextmanager
-    def arm(self, cell: Cell) -> Iterator[None]:
+    def arm(self, cell: Cell | Arm) -> Iterator[None]:
         """Publish the status of the cell's arm while it is connected; a recorded scan has none."""
         if self._cell.robot.kind == "replay":
             yield
@@ -256,7 +256,7 @@ class ScanReporter:
             thread.join()
             self._publish(ArmDisconnected())
 
-    def _watch(self, cell: Cell, ended: Flag) -> None:
+    def _watch(self, cell: Cell | Arm, ended: Flag) -> None:
         self._publish(_status(cell))
         while not ended.wait(_STATUS_S):
             self._publish(_status(cell))
@@ -280,7 +280,7 @@ def planned_pose(cell: CellSettings, joints_rad: Sequence[float]) -> FloatArray:
     return pose
 
 
-def _status(cell: Cell) -> ArmStatus:
+def _status(cell: Cell | Arm) -> ArmStatus:
     try:
         return ArmStatus(cell.robot.state(), cell.gripper.is_closed, "")
     except PoursightError as error:

@@ -8,6 +8,8 @@ from typing import Protocol, TypeVar
 
 from core.errors import PoursightError
 from core.progress import Reporter
+from hardware.cell import CellSettings
+from hardware.cell.own_arm import why_other_arm
 from hardware.errors import DeviceError, RobotError
 from hardware.interfaces import ReadyStep, Robot
 
@@ -32,9 +34,10 @@ class ArmOperator(Protocol):
         ...
 
 
-class _ArmDevice(Protocol):
+class ArmDevice(Protocol):
     """What has a robot and is entered to connect it."""
 
+    settings: CellSettings
     robot: Robot
 
     def __enter__(self) -> object: ...
@@ -42,7 +45,7 @@ class _ArmDevice(Protocol):
     def __exit__(self, *exception: object) -> None: ...
 
 
-D = TypeVar("D", bound=_ArmDevice)
+D = TypeVar("D", bound=ArmDevice)
 
 
 @contextmanager
@@ -66,16 +69,18 @@ def connected(device: D, operator: ArmOperator | None, reporter: Reporter) -> It
         operator.confirm_step(*pending)
         device.robot.take_step(pending[0])
     try:
-        warn_of_kinematics(device.robot, reporter)
+        warn_of_kinematics(device, reporter)
         yield device
     finally:
         device.__exit__(None, None, None)
 
 
-def warn_of_kinematics(robot: Robot, reporter: Reporter) -> None:
-    """Say what it costs where a connected arm's own kinematics are not known."""
-    if robot.kinematics.caution:
-        reporter.warn(robot.kinematics.caution)
+def warn_of_kinematics(device: ArmDevice, reporter: Reporter) -> None:
+    """Say what it costs that a connected arm's own kinematics are not known, or not those of its cell."""
+    kinematics = device.robot.kinematics
+    for sentence in (kinematics.caution, why_other_arm(device.settings, kinematics)):
+        if sentence:
+            reporter.warn(sentence)
 
 
 class Recoverable(Protocol):

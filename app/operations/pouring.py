@@ -16,6 +16,7 @@ from core.imagination.results import PourGrid
 from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions
 from core.motion.pour.plan import PlannedMove, PourPlan, PourTarget
+from core.parameters.bodies import CupParameters
 from core.pipeline.pipeline import Pipeline
 from core.pipeline.session_view import SessionView
 from core.progress import Reporter
@@ -74,16 +75,8 @@ class PreparedPour:
         return self.target
 
 
-class Operator(ArmOperator, Protocol):
-    """The person at the arm that pours."""
-
-    def prepared(self, prepared: PreparedPour) -> None:
-        """Which pour will be made."""
-        ...
-
-    def confirm_doubtful(self, advice: str) -> None:
-        """Whether it shall be poured although it is not advised."""
-        ...
+class CupOperator(ArmOperator, Protocol):
+    """The person at an arm that takes a cup and brings it back."""
 
     def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:
         """Whether a robot shall pour a cup as planned; `note` says why it is this pour."""
@@ -105,6 +98,18 @@ class Operator(ArmOperator, Protocol):
         """The arm is home; the next pour is planned again."""
         ...
 
+
+class Operator(CupOperator, Protocol):
+    """The person at the arm that pours."""
+
+    def prepared(self, prepared: PreparedPour) -> None:
+        """Which pour will be made."""
+        ...
+
+    def confirm_doubtful(self, advice: str) -> None:
+        """Whether it shall be poured although it is not advised."""
+        ...
+
     def counted(self, cup: Cup) -> Outcome | None:
         """What became of the candies of a real pour; none if nobody counted them."""
         ...
@@ -118,6 +123,7 @@ def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
     """Imagine what is stale and judge which pours the arm of a cell can make.
 
     Raises:
+        InputError: the session holds a mesh, or the cell's cup is not the one that was imagined.
         StageError: the object is no open container, or more is to be poured than fits.
         MotionError: the arm cannot take the cup at all.
     """
@@ -127,6 +133,7 @@ def prepare(pipeline: Pipeline, settings: CellSettings) -> PreparedPour:
             f"The session {session.path} holds a mesh, so it is not known where the object is in a cell.",
             Remedy.SCAN_THE_MESH,
         )
+    _refuse_other_cup(settings, pipeline.parameters.pouring.cup)
     cell = pour_cell(settings)
     imagination = pipeline.imagination()
     if imagination.amount is not None and imagination.amount.refusal:
@@ -195,6 +202,20 @@ def was_poured(session: Session) -> bool:
     return is_over and any(run.imagination == pours.digest for run in made)
 
 
+def _refuse_other_cup(settings: CellSettings, imagined: CupParameters) -> None:
+    """What was imagined with one cup says nothing of another, and the hand would take it in another place."""
+    cup = settings.cup
+    if cup is None or cup == imagined:
+        return
+    held = imagined.model_dump()
+    changes = ", ".join(
+        f"pouring.cup.{name} = {value:.6g}" for name, value in cup.model_dump().items() if value != held[name]
+    )
+    raise InputError(
+        f"The cup of the {settings.name} is not the one that was imagined; imagine again with {changes}."
+    )
+
+
 def _target(pipeline: Pipeline, imagination: Imagination, motions: PourMotions) -> PourTarget | None:
     record, grid = pipeline.session.record("pouring"), imagination.grid
     assert record is not None and grid is not None, "the pours were imagined"
@@ -242,7 +263,7 @@ def cell_to_pour_in(prepared: PreparedPour, session: Path, reporter: Reporter) -
     return replace(cell, limits=cell.limits.model_copy(update=slower))
 
 
-def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path:
+def pour_cup(pouring: Pouring, operator: CupOperator, robot: str, cup: Cup) -> Path:
     """Plan, ask and pour until one cup is poured; return its run's folder."""
     while True:
         fresh = pouring.plan()
@@ -256,7 +277,7 @@ def pour_cup(pouring: Pouring, operator: Operator, robot: str, cup: Cup) -> Path
             _return(operator, pouring)
 
 
-def empty_hand(pouring: Pouring, operator: Operator) -> None:
+def empty_hand(pouring: Pouring, operator: CupOperator) -> None:
     """Find out what an earlier program left in the closed hand, and get rid of it; the operator decides."""
     known = pouring.take_up()
     if known and operator.is_cup_in_hand(known):
@@ -266,7 +287,7 @@ def empty_hand(pouring: Pouring, operator: Operator) -> None:
         pouring.give_up_way_back()
 
 
-def _return(operator: Operator, pouring: Pouring) -> None:
+def _return(operator: CupOperator, pouring: Pouring) -> None:
     """Let an arm that is ready back off with the cup, as often as it is stopped; then it can plan again.
 
     Where the arm was pushed off its checked path there is no way back along it: somebody takes what is in the

@@ -8,12 +8,14 @@ from itertools import combinations
 
 import numpy as np
 
+from core.calibration.depth_plane import MOST_RMS_SHARE, DepthPlane, find_plane
 from core.errors import PoursightError
 from core.geometry import FloatArray
 from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose
 from hardware.cell.cell import open_cell
 from hardware.cell.devices import real_arm, real_camera, robotiq_address
+from hardware.cell.own_arm import why_other_arm
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import ARMS, CellSettings
 from hardware.grippers.robotiq_line import Contact, RobotiqLine, refuse_faulty
@@ -63,7 +65,7 @@ def examine_robot(settings: CellSettings) -> Finding:
     said = f"{said}, {_kinematics_read(arm.kinematics)}, joint limits {limits}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
-    return Finding("robot", said, problem)
+    return Finding("robot", said, problem or why_other_arm(settings, arm.kinematics) or None)
 
 
 def examine_gripper(settings: CellSettings) -> Finding:
@@ -106,8 +108,26 @@ def examine_camera(settings: CellSettings) -> Finding:
     share = float((image.depth_m > 0).mean())
     height, width = image.depth_m.shape
     value = f"{camera.name}, {width} x {height}, depth in {share:.0%} of the pixels"
-    blind = None if share > 0 else "It gives no depth at all; check its projector and what it looks at."
-    return Finding("camera", value, blind)
+    if share == 0:
+        return Finding("camera", value, "It gives no depth at all; check its projector and what it looks at.")
+    return Finding("camera", *_with_plane(value, find_plane(image.depth_m, image.intrinsics)))
+
+
+def _with_plane(value: str, plane: DepthPlane | None) -> tuple[str, str | None]:
+    """What the camera is with how true its depth is, and what to do if it is not."""
+    if plane is None or not plane.is_flat:
+        return f"{value}; look at a flat surface from the distance of a scan to see how true it is", None
+    said = (
+        f"{value}, within {1000 * plane.rms_m:.1f} mm (RMS) of a plane at {plane.distance_m:.2f} m, "
+        f"seen at {np.degrees(plane.tilt_rad):.0f} degrees"
+    )
+    if plane.is_true:
+        return said, None
+    return said, (
+        f"Its depth is {1000 * plane.rms_m:.1f} mm (RMS) off a plane at {plane.distance_m:.2f} m, and "
+        f"{1000 * MOST_RMS_SHARE * plane.distance_m:.1f} mm are allowed; clean its windows, keep sunlight "
+        "and shiny surfaces out of sight, and calibrate its depth as its maker says."
+    )
 
 
 def _camera_of(settings: CellSettings) -> Camera:

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from core.geometry import FloatArray
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.pour.cell import MotionSettings
+from core.parameters.bodies import CupParameters
 from core.parameters.fields import OURS, Group, choice, declaration, quantity
 from core.scan.model import CropBox, Intrinsics
 from hardware.cell.gripper_settings import (
@@ -96,6 +97,10 @@ class RobotSettings(Group):
     )
     address: str | None = choice(None, "ur5: the controller's address in the network.", source=CELL)
     model: Literal["UR5", "UR5e"] = choice("UR5", "The arm's model.", source=CELL)
+    kinematics_checksum: str | None = choice(
+        None, "Of the arm's own kinematics, with which the cell was calibrated; none: not known.",
+        source=CELL, is_written=False,
+    )  # fmt: skip
     home_rad: Joints = choice(..., "Where the arm rests, clear of everything.", source=CELL)
     joint_speed_rad_s: float = quantity(
         0.8, "Speed of the fastest joint while scanning.", unit="rad/s", source=OURS, low=0.01, high=pi
@@ -262,6 +267,7 @@ class CellSettings(Group):
     camera: CameraSettings
     robot: RobotSettings
     gripper: GripperSettings = GripperSettings()
+    cup: CupParameters | None = Field(None, exclude_if=lambda given: given is None)
     place: PlaceSettings
     motion: MotionSettings = MotionSettings()
     obstacles: tuple[BoxSettings, ...] = ()

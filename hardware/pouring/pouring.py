@@ -6,7 +6,7 @@ Between the steps a person decides; nothing here asks, and nothing continues by 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -38,6 +38,14 @@ _NEWEST = 2000
 STAGE = "pour"
 
 
+ConfirmMove = Callable[[PlannedMove], None]
+"""Asks whether a move shall begin; raises `Cancelled` if not. The arm is at rest meanwhile."""
+
+
+def no_question(_: PlannedMove) -> None:
+    """One confirmation is enough for all moves."""
+
+
 @dataclass(frozen=True)
 class FreshPlan:
     """A plan, the pour it was made for, and `time.monotonic` of when: it expires."""
@@ -55,14 +63,22 @@ class Pouring:
     """
 
     def __init__(
-        self, arm: Arm, cell: PourCell, target: PourTarget, session: Path, reporter: Reporter
+        self,
+        arm: Arm,
+        cell: PourCell,
+        target: PourTarget,
+        session: Path,
+        reporter: Reporter,
+        confirm_move: ConfirmMove = no_question,
     ) -> None:
+        """`confirm_move` is asked before each move but the first, which is confirmed with the plan."""
         self.last_run: Path | None = None
         self._arm = arm
         self._published_cell = cell
         self._target = target
         self._session = session
         self._reporter = reporter
+        self._confirm_move = confirm_move
         self._interrupted: tuple[PourPlan, tuple[PlannedMove, ...], int] | None = None
 
     @property
@@ -212,7 +228,9 @@ class Pouring:
 
     def _make(self, plan: PourPlan, moves: tuple[PlannedMove, ...], log: RunLog) -> None:
         margins = plan_margins(self._cell, self._target, plan)
-        procedure = PourProcedure(self._arm, moves, log, self._reporter, margins, self._cell)
+        procedure = PourProcedure(
+            self._arm, moves, log, self._reporter, margins, self._cell, self._confirm_move
+        )
         try:
             procedure.run()
         except BaseException:
@@ -272,9 +290,11 @@ class PourProcedure:
         reporter: Reporter,
         margins: Mapping[Segment, MoveMargin],
         cell: PourCell,
+        confirm_move: ConfirmMove,
     ) -> None:
         """`margins` are those of the plan that the moves belong to, which was made for `cell`."""
         self.current = -1
+        self._confirm_move = confirm_move
         self._margins = margins
         self._T_flange_tool = cell.T_flange_grasp
         self._max_force_n = cell.limits.max_force_n
@@ -297,6 +317,8 @@ class PourProcedure:
             self._watched.refuse_elsewhere(self._moves[0].trajectory.start_rad)
             for index, move in enumerate(self._moves):
                 self.current = index
+                if index:
+                    self._confirm_move(move)
                 self._make(move)
         except Cancelled as request:
             stopped = Cancelled("Stopped on request: the arm is at rest where it was stopped.")

@@ -10,6 +10,7 @@ import numpy as np
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.shapes import box_mesh, cylinder_mesh
 from core.motion.kinematics import link_poses
+from core.parameters.bodies import CupParameters
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
 _TABLE_M = 0.03
 _BASE_M = 0.12
 """About the robot's foot."""
+_CUP_M = 0.04
+"""About the cup's foot."""
 _FOOT_M = 0.075
 """The foot's radius."""
 _OBSTACLE = "obstacle"
@@ -46,6 +49,7 @@ class CellModel:
         table: the part of it that is shown.
         platform: where the object stands.
         obstacles: further things to keep away from.
+        cup: at its station.
     """
 
     arm: ArmModel
@@ -54,6 +58,7 @@ class CellModel:
     table: Shape
     platform: Shape
     obstacles: tuple[Shape, ...]
+    cup: Shape
 
     def draw_furniture(self, scene: Scene3D) -> None:
         """Draw everything but the arm in place of what stood there before."""
@@ -105,7 +110,15 @@ def cell_model(cell: CellSettings, on_table_m: npt.ArrayLike, margin_m: float) -
         ),
         platform=box_mesh((*low, top), (*high, place.platform_height_m)),
         obstacles=tuple(box_mesh(box.min_m, box.max_m) for box in cell.obstacles),
+        cup=_standing_cup(cell),
     )
+
+
+def _standing_cup(cell: CellSettings) -> Shape:
+    cup = cell.cup or CupParameters()
+    foot_radius_m = cup.base_inner_radius_m + cup.wall_m
+    vertices, faces = cylinder_mesh(foot_radius_m, cup.length_m, cup.mouth_radius_m)
+    return vertices + np.array(cell.place.cup_station_m), faces
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +143,8 @@ class ShownCell:
 def load_shown_cell(cell: CellSettings) -> ShownCell:
     """Put the cell together."""
     low_m, high_m = np.array(cell.place.crop_min_m), np.array(cell.place.crop_max_m)
-    model = cell_model(cell, [low_m[:2], high_m[:2]], _MARGIN_M)
+    foot_m = np.array(cell.place.cup_station_m)[:2]
+    model = cell_model(cell, [low_m[:2], high_m[:2], foot_m - _CUP_M, foot_m + _CUP_M], _MARGIN_M)
     joints_rad = np.array([cell.robot.home_rad, *cell.scan.views_rad])
     middles_m = link_poses(model.arm, joints_rad)[..., :3, 3].reshape(-1, 3)
     reach_m = np.array([middles_m.min(axis=0) - _ARM_M, middles_m.max(axis=0) + _ARM_M])

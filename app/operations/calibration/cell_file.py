@@ -94,8 +94,13 @@ def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None =
     return path
 
 
-def write_hand_eye(path: Path, T_flange_camera: FloatArray) -> None:
+def write_hand_eye(path: Path, T_flange_camera: FloatArray, kinematics: str = "") -> None:
     """Put another hand-eye pose (4, 4) into a cell's file; all else in it stays, comments too.
+
+    Args:
+        path: of the file.
+        T_flange_camera: the pose.
+        kinematics: checksum of the arm's own kinematics by which it was found; empty: not known.
 
     Raises:
         InputError: the file cannot be read, or would be no cell any more; it stays as it was.
@@ -104,6 +109,11 @@ def write_hand_eye(path: Path, T_flange_camera: FloatArray) -> None:
 
     def change(document: tomlkit.TOMLDocument) -> None:
         _table(document, "camera")["T_flange_camera"] = _matrix(T_flange_camera)
+        robot = _table(document, "robot")
+        if kinematics:
+            robot["kinematics_checksum"] = kinematics
+        else:
+            robot.pop("kinematics_checksum", None)
 
     _changed(path, change)
 
@@ -123,6 +133,25 @@ def write_views(path: Path, views_rad: Sequence[Sequence[float]]) -> None:
 
     def change(document: tomlkit.TOMLDocument) -> None:
         _table(document, "scan")["views_rad"] = _lines(views_rad)
+
+    _changed(path, change)
+
+
+def write_cup(path: Path, values: dict[str, Any]) -> None:
+    """Put other values of `place`, `gripper` and `cup`, by section, into a cell's file; see `write_hand_eye`.
+
+    A section that is none is taken out.
+    """
+
+    def change(document: tomlkit.TOMLDocument) -> None:
+        for section, table in values.items():
+            if table is None:
+                document.pop(section, None)
+                continue
+            if section not in document:
+                document[section] = tomlkit.table()
+            for name, value in table.items():
+                _table(document, section)[name] = value
 
     _changed(path, change)
 

@@ -94,7 +94,15 @@ def calibrate_cell(
     facts: dict[str, Any] = {"board": asdict(board), "T_flange_camera": settings.camera.pose.tolist()}
     before = None if is_restarted else _interrupted(cell_file, facts)
     with capturing(
-        cell_file, settings, board, step_names.HAND_EYE, facts, reporter, operator, observer, n_views
+        cell_file,
+        _of_any_arm(settings),
+        board,
+        step_names.HAND_EYE,
+        facts,
+        reporter,
+        operator,
+        observer,
+        n_views,
     ) as capture:
         if before is not None:
             capture.adopt(before)
@@ -102,6 +110,13 @@ def calibrate_cell(
             find_board(capture)
         take_rounds(capture)
     return conclude(cell_file, settings, capture)
+
+
+def _of_any_arm(settings: CellSettings) -> CellSettings:
+    """It is being calibrated: with which arm it was before does not matter."""
+    return settings.model_copy(
+        update={"robot": settings.robot.model_copy(update={"kinematics_checksum": None})}
+    )
 
 
 def conclude(cell_file: Path, settings: CellSettings, capture: Capture) -> Calibration:
@@ -131,7 +146,7 @@ def conclude(cell_file: Path, settings: CellSettings, capture: Capture) -> Calib
     table = _result_table(found, fit, settings.camera.pose, board) | capture.facts
     with explained(capture.folder):
         write_json(capture.folder / RESULT, table)
-    write_hand_eye(cell_file, fit.T_flange_camera)
+    write_hand_eye(cell_file, fit.T_flange_camera, capture.facts["kinematics"])
     return found
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from app.operations.calibration import step_names
+from app.operations.calibration.cup_entry import is_cup_in_file, reach_is_for
 from app.operations.calibration.devices import device_table
 from app.operations.calibration.hand_eye import is_same
 from app.operations.calibration.provenance import (
@@ -22,7 +23,7 @@ from app.operations.calibration.provenance import (
     write_boards,
 )
 from app.operations.calibration.table import is_in_file
-from app.operations.calibration.views import are_in_file, views_are_for
+from app.operations.calibration.views import are_for, are_in_file
 from core.calibration.board import BoardSpec
 from core.calibration.checking import MOST_RATIO
 from core.calibration.drift import Drift
@@ -67,7 +68,7 @@ def steps(cell_file: Path) -> tuple[Step, ...]:
     read_cell(cell_file)
     ways: tuple[Callable[[Path], Step], ...] = (
         partial(_device, step=step_names.ARM), partial(_device, step=step_names.CAMERA),
-        _board, _hand_eye, _check, _table, _views, _reference,
+        _board, _hand_eye, _check, _table, _views, _reference, _cup, _dry_run,
     )  # fmt: skip
     return tuple(way(cell_file) for way in ways)
 
@@ -213,11 +214,11 @@ def _views(cell_file: Path) -> Step:
         )
     folder, table = latest
     with reading(folder):
-        time, figure, made_for = str(table["time"]), str(table["said"]), table["for"]
-        is_same_set = are_in_file(settings, table["after"])
+        time, figure = str(table["time"]), str(table["said"])
+        is_same_set, is_same_cell = are_in_file(settings, table["after"]), are_for(table["for"], settings)
     if not is_same_set:
         return Step(step_names.VIEWS, StepState.STALE, "the file has other views than were chosen", time)
-    if made_for != views_are_for(settings):
+    if not is_same_cell:
         return Step(
             step_names.VIEWS,
             StepState.STALE,
@@ -247,6 +248,41 @@ def _reference(cell_file: Path) -> Step:
             shift_m, turn_rad = (np.array(drifts[1][name], dtype=float) for name in ("shift_m", "turn_rad"))
             said += f"; last time it had moved by {Drift(shift_m, turn_rad).sentence}"
     return Step(step_names.REFERENCE, StepState.DONE, said, time)
+
+
+def _cup(cell_file: Path) -> Step:
+    latest, settings = latest_result(cell_file, step_names.CUP), read_cell(cell_file)
+    if latest is None:
+        return Step(step_names.CUP, StepState.OPEN, "enter where the cup stands, and how large it is")
+    folder, table = latest
+    with reading(folder):
+        time, said, is_same_place = (
+            str(table["time"]),
+            str(table["said"]),
+            table["for"] == reach_is_for(settings),
+        )
+        is_same_cup = is_cup_in_file(settings, table["after"])
+    if not is_same_cup:
+        return Step(
+            step_names.CUP, StepState.STALE, "the file has another cup or station than was entered", time
+        )
+    if not is_same_place:
+        return Step(step_names.CUP, StepState.STALE, "the cell has changed since its reach was judged", time)
+    return Step(step_names.CUP, StepState.DONE, said, time)
+
+
+def _dry_run(cell_file: Path) -> Step:
+    latest, settings = latest_result(cell_file, step_names.DRY_RUN), read_cell(cell_file)
+    if latest is None:
+        return Step(step_names.DRY_RUN, StepState.OPEN, "let the arm go through a pour with an empty cup")
+    folder, table = latest
+    with reading(folder):
+        time, said, is_same = str(table["time"]), str(table["said"]), table["for"] == reach_is_for(settings)
+    if not is_same:
+        return Step(
+            step_names.DRY_RUN, StepState.STALE, "the cell has changed since the arm went through it", time
+        )
+    return Step(step_names.DRY_RUN, StepState.DONE, said, time)
 
 
 def _is_by_present_camera(cell_file: Path, hand_eye: str) -> bool:

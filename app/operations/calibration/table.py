@@ -28,7 +28,7 @@ from core.files import write_json
 from core.geometry import FloatArray, transform_points
 from core.progress import Reporter
 from core.session import explained
-from hardware.cell import Cell
+from hardware.cell import Cell, read_cell
 from hardware.cell.settings import CellSettings, PlaceSettings
 
 USUAL_THICKNESS_M = 0.004
@@ -36,6 +36,7 @@ MOST_TILT_RAD = np.radians(1.5)
 """On a platform of 0.4 m that is 10 mm from edge to edge, and the object's ground is taken for horizontal."""
 _DIGITS = 4
 _HEIGHTS = ("table_height_m", "platform_height_m")
+_CUP = "cup_station_m"
 _CORNERS = ("platform_min_m", "platform_max_m", "crop_min_m", "crop_max_m")
 
 
@@ -111,9 +112,23 @@ def measure_table(
 
 
 def is_in_file(place: PlaceSettings, wanted: dict[str, Any]) -> bool:
-    """Whether a cell's file holds these places."""
+    """Whether a cell's file holds these places; where the cup stands is entered in a step of its own."""
     held = place.model_dump(mode="json")
-    return all(np.allclose(held[name], value, atol=10.0**-_DIGITS / 2) for name, value in wanted.items())
+    return all(
+        np.allclose(held[name], value, atol=10.0**-_DIGITS / 2)
+        for name, value in wanted.items()
+        if name != _CUP
+    )
+
+
+def write_former_place(path: Path, before: dict[str, Any]) -> None:
+    """Put back where things were before they were measured; of the cup's station its height alone.
+
+    Raises:
+        PoursightError: see `write_place`.
+    """
+    x, y, _ = read_cell(path).place.cup_station_m
+    write_place(path, before | {_CUP: [x, y, before[_CUP][2]]})
 
 
 def _lay_on_platform(cell: Cell, thickness_m: float) -> None:
@@ -162,13 +177,13 @@ def _tilt_rad(T_base_board: FloatArray) -> float:
 
 def _places(place: PlaceSettings, moved_m: FloatArray) -> tuple[dict[str, Any], dict[str, Any]]:
     """What the file has, and what it is to have: platform, crop box and table move, the cup's foot rises."""
-    names = (*_HEIGHTS, *_CORNERS, "cup_station_m")
+    names = (*_HEIGHTS, *_CORNERS, _CUP)
     before = place.model_dump(mode="json", include=set(names))
     after: dict[str, Any] = {}
     for name in names:
         if name in _HEIGHTS:
             shift = moved_m[2]
-        elif name == "cup_station_m":
+        elif name == _CUP:
             shift = np.array([0.0, 0.0, moved_m[2]])
         else:
             shift = moved_m[: len(before[name])]

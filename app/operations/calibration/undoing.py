@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from app.operations.calibration import step_names
-from app.operations.calibration.cell_file import write_hand_eye, write_place, write_views
+from app.operations.calibration.cell_file import write_cup, write_hand_eye, write_views
+from app.operations.calibration.cup_entry import is_cup_in_file
 from app.operations.calibration.hand_eye import is_same
 from app.operations.calibration.provenance import RESULT, latest_result, read_boards, withdraw, write_boards
-from app.operations.calibration.table import is_in_file
+from app.operations.calibration.table import is_in_file, write_former_place
 from app.operations.calibration.views import are_in_file
 from core.errors import InputError
 from core.files import reading
@@ -36,8 +37,9 @@ _WRITINGS = {
     step_names.HAND_EYE: _Writing(
         lambda settings, after: is_same(after, settings.camera.pose), write_hand_eye
     ),
-    step_names.TABLE: _Writing(lambda settings, after: is_in_file(settings.place, after), write_place),
+    step_names.TABLE: _Writing(lambda settings, after: is_in_file(settings.place, after), write_former_place),
     step_names.VIEWS: _Writing(are_in_file, write_views),
+    step_names.CUP: _Writing(is_cup_in_file, write_cup),
 }
 
 

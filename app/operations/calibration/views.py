@@ -98,8 +98,14 @@ def views_are_for(settings: CellSettings) -> dict[str, Any]:
     return {
         "T_flange_camera": np.array(settings.camera.T_flange_camera).tolist(),
         "home_rad": list(settings.robot.home_rad),
-        "place": settings.place.model_dump(mode="json"),
+        "place": settings.place.model_dump(mode="json", exclude={"cup_station_m"}),
     }
+
+
+def are_for(made_for: dict[str, Any], settings: CellSettings) -> bool:
+    """Whether views were chosen by what a cell's file has now; older records name the cup's station, too."""
+    place = {name: value for name, value in made_for["place"].items() if name != "cup_station_m"}
+    return made_for | {"place": place} == views_are_for(settings)
 
 
 def said_of_views(views: tuple[ReachableView, ...]) -> str:

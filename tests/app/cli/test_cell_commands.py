@@ -16,7 +16,9 @@ from app.operations.calibration.provenance import read_looks, runs
 from app.operations.calibration.steps import enter_board
 from core.calibration.board import BoardSpec
 from core.files import write_whole
+from hardware.cameras.simulated_board import SimulatedBoardCamera
 from hardware.cell import read_cell
+from hardware.errors import CameraLost
 from hardware.simulation.board_view import BoardLook
 from tests.patience import wait_until
 
@@ -58,7 +60,7 @@ def test_a_cell_is_made_and_its_steps_are_listed(poursight, cells):
     code, out, _ = poursight("cell", "show", "bench-one")
     assert code == 0
     rows = [line.split()[:2] for line in out.splitlines()[1:]]
-    names = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference"]
+    names = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
     assert [name for name, _ in rows] == names
     assert {state for _, state in rows} == {"open"}
     assert poursight("cell", "show", cells / "bench-one.toml")[0] == 0
@@ -96,6 +98,11 @@ def test_a_board_is_printed_measured_and_undone(poursight, cells):
         (("board", "bench", "--dictionary=7X7"), "dictionary"),
         (("board", "bench", "--columns=60"), "take 4 to 20 each way"),
         (("board", "bench", "--measured-mm=-3"), "enter 5 to 200 mm"),
+        (("cup", "bench", "--taught"), "nobody can guide it"),
+        (("cup", "bench", "--taught", "--station-mm", "0", "0", "0"), "either taught or typed"),
+        (("cup", "bench", "--base-mm=90"), "wider at its base"),
+        (("cup", "bench", "--station-mm", "900", "900", "15"), "cannot reach the cup"),
+        (("dry-run", "bench", "--yes"), "No cup was entered"),
         *(
             ((command, "bench", "--undo"), f"The step '{step}' of")
             for command, step in (
@@ -105,6 +112,8 @@ def test_a_board_is_printed_measured_and_undone(poursight, cells):
                 ("table", "table"),
                 ("views", "views"),
                 ("reference", "reference"),
+                ("cup", "cup"),
+                ("dry-run", "dry-run"),
             )
         ),
     ],
@@ -159,6 +168,32 @@ def test_a_disk_that_fills_up_ends_it_in_one_sentence_and_what_was_taken_is_kept
     assert "is full: free some space" in refused("cell", "calibrate", "bench", N_VIEWS)
     assert n_looks(path) == 2
     assert path.read_bytes() == before
+
+
+@pytest.mark.system
+def test_a_camera_that_is_unplugged_ends_it_in_one_sentence_and_what_was_taken_is_used(
+    refused, poursight, monkeypatch
+):
+    path = measured_cell(seed=9)
+    before = path.read_bytes()
+    capture, n_taken = SimulatedBoardCamera.capture, []
+
+    def until_unplugged(camera):
+        if len(n_taken) == 4:
+            raise CameraLost("The camera does not answer any more; plug it in again.")
+        n_taken.append(camera)
+        return capture(camera)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(SimulatedBoardCamera, "capture", until_unplugged)
+        assert "plug it in again" in refused("cell", "calibrate", "bench", N_VIEWS)
+    kept = n_looks(path)
+    assert kept == 3, "the first image tells what the camera is"
+    assert path.read_bytes() == before
+    code, out, err = poursight("cell", "calibrate", "bench", N_VIEWS)
+    assert code == 0, err
+    assert "Calibrated from 8 views" in out
+    assert n_looks(path) < kept + 8, "what was taken is used"
 
 
 @pytest.mark.system

@@ -25,6 +25,7 @@ from app.gui.views.state_mark import State
 from app.jobs.cell_events import BoardSought, LooksPlanned
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
+from app.operations.calibration.cup_entry import entry_of
 from app.operations.calibration.steps import Step, StepState
 from core.calibration.board import BoardSpec
 from core.errors import PoursightError
@@ -61,6 +62,8 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         side.new_wanted.connect(self._want_new)
         side.form.changed.connect(self.update_actions)
         side.options.print_wanted.connect(self._print)
+        cup = side.options.cup
+        cup.read_wanted.connect(lambda: self._work.read_station(cup.show_station))
         desk.arm.changed.connect(self._show_arm)
         desk.jobs.event_received.connect(self._hear)
         for signal in (desk.jobs.finished, desk.jobs.failed):
@@ -85,6 +88,9 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         board = self.content.board
         if board is not None:
             self.side.options.show_board(board.board, board.is_measured)
+        settings = self.desk.cell.settings
+        if settings is not None:
+            self.side.options.cup.show_entry(entry_of(settings), settings.robot.is_real)
         self.view.show_cell(self.content.shown, BoardSpec() if board is None else board.board)
         self.side.show_cells(self.content.known, self.desk.cell.path, self.is_new)
         self._show_evidence()

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gui.pages.cell.cup_form import CupForm
 from app.gui.pages.cell.step_list import StepList
 from app.gui.pages.layouts import row_of
 from app.gui.pages.page import SidePanel
@@ -185,6 +186,9 @@ class StepOptions(QStackedWidget):
     """What the chosen step may be told.
 
     Signals: `print_wanted` when the board is to be printed.
+
+    Attributes:
+        cup: where it stands, and how large it is.
     """
 
     print_wanted = Signal()
@@ -203,6 +207,10 @@ class StepOptions(QStackedWidget):
         self._add(step_names.BOARD, self._board_form())
         self._add(step_names.HAND_EYE, _form(self.tr("Views"), self._n_views))
         self._add(step_names.TABLE, _form(self.tr("Thickness of the board"), self._thickness))
+        self.cup = CupForm()
+        cup = QFormLayout()
+        cup.addRow(self.cup)
+        self._add(step_names.CUP, cup)
         self._add(step_names.VIEWS, _form(self.tr("Views at most"), self._n_scan_views))
 
     def show_step(self, step: str) -> None:

@@ -19,6 +19,7 @@ _NEEDS = {
     step_names.CHECK: step_names.HAND_EYE,
     step_names.TABLE: step_names.HAND_EYE,
     step_names.REFERENCE: step_names.HAND_EYE,
+    step_names.DRY_RUN: step_names.CUP,
 }
 """The step that must be done before another one."""
 _SHOWN_REFUSALS = 3
@@ -172,6 +173,10 @@ def _running(now: Situation) -> Now:
         return Now("running", translate("CellPage", "Taking an image …"))
     if now.step == step_names.VIEWS:
         return Now("running", translate("CellPage", "Choosing views that show all sides …"))
+    if now.step == step_names.CUP:
+        return Now("running", translate("CellPage", "Seeing whether the arm can pour with this cup …"))
+    if now.step == step_names.DRY_RUN:
+        return Now("running", translate("CellPage", "The arm goes through a pour with an empty cup …"))
     if not now.looks:
         return Now("running", translate("CellPage", "Connecting to the cell …"))
     n = now.looks[-1].n_usable

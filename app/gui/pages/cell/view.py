@@ -20,7 +20,7 @@ from core.calibration.board import BoardSpec
 from core.geometry import FloatArray, make_pose, rotation_z, transform_points
 
 _ARM, _BOX, _BOARD, _INK, _VIEWS = "arm", "box", "board", "board ink", "views"
-_REACH, _TABLE = "reach", "table"
+_REACH, _TABLE, _CUP = "reach", "table", "cup"
 _THICKNESS_M, _INK_M = 0.003, 0.0012
 """Of the sheet, and how far its ink is drawn above it, so that the two do not flicker."""
 _PICTURE_PX = (256, 192)
@@ -57,6 +57,8 @@ class CellView(QWidget):
         scene, model = self.scene, cell.model
         model.draw_furniture(scene)
         model.draw_platform_top(scene, np.empty((0, 3), dtype=np.float32))
+        if cell.has_arm:
+            scene.set_mesh(_CUP, *model.cup, color="accent")
         scene.set_box(_BOX, cell.box_min_m, cell.box_max_m)
         if cell.has_arm and (is_other or _ARM not in scene.layers()):
             scene.set_arm(_ARM, model.arm, model.home_rad, tools=model.tools)

@@ -100,6 +100,16 @@ def _titles() -> dict[str, tuple[str, str, str]]:
             translate("CellPage", "Store a reference view"),
             translate("CellPage", "Store another one"),
         ),
+        step_names.CUP: (
+            translate("CellPage", "Cup and station"),
+            translate("CellPage", "Enter the cup"),
+            translate("CellPage", "Enter it again"),
+        ),
+        step_names.DRY_RUN: (
+            translate("CellPage", "Dry run"),
+            translate("CellPage", "Begin the dry run"),
+            translate("CellPage", "Make another one"),
+        ),
     }
 
 
@@ -136,6 +146,16 @@ def _what(step: str) -> str:
             "The arm looks at the board once more. Each scan takes the same look again, and says if the "
             "camera has moved since.",
         ),
+        step_names.CUP: translate(
+            "CellPage",
+            "Where the cup’s foot stands, its size, and the masses. Whether the arm can take it and pour is "
+            "seen at once. Nothing moves.",
+        ),
+        step_names.DRY_RUN: translate(
+            "CellPage",
+            "The arm takes the empty cup, pours nothing into a bowl in the middle of the platform, and puts "
+            "the cup back, at 30 % of its speed.",
+        ),
     }[step]
 
 
@@ -146,6 +166,15 @@ def _by_hand(step: str) -> str:
             "CellPage",
             "Lay the board flat near the platform, and guide the arm by hand to where the camera sees all of "
             "it.",
+        ),
+        step_names.CUP: translate(
+            "CellPage",
+            "To teach it, guide the open hand around the standing cup, as it shall hold it, and read.",
+        ),
+        step_names.DRY_RUN: translate(
+            "CellPage",
+            "Clear the platform, and put the empty cup on its station. Each move waits for Go on; Cancel and "
+            "STOP let the arm come to rest.",
         ),
     }.get(step, "")
 

@@ -14,6 +14,7 @@ from app.gui.pages.cell.side import StepOptions
 from app.jobs.cell_work import CellWork
 from app.operations.calibration import step_names, steps, undoing
 from app.operations.calibration.cell_file import known_cells, new_cell
+from app.operations.calibration.cup_entry import read_taught_station
 
 _PATIENCE_REAL_S = 4.0
 """A real arm comes to rest before its process may be ended."""
@@ -65,6 +66,10 @@ class CellJobs:
             self._start(step, title, CellWork.measure_table, path, options.thickness_m)
         elif step == step_names.REFERENCE:
             self._start(step, title, CellWork.store_reference, path)
+        elif step == step_names.CUP:
+            self._start(step, title, CellWork.enter_cup, path, options.cup.entry)
+        elif step == step_names.DRY_RUN:
+            self._start(step, title, CellWork.dry_run, path)
         else:
             assert step == step_names.VIEWS, "there are no others"
             self._start(step, title, CellWork.choose_views, path, options.n_scan_views)
@@ -78,6 +83,10 @@ class CellJobs:
             then(pdf)
 
         self._desk.background.run(_IN_BACKGROUND, write, written)
+
+    def read_station(self, then: Callable[[tuple[float, float, float]], None]) -> None:
+        """Read where the hand was guided to."""
+        self._desk.background.run(_IN_BACKGROUND, partial(read_taught_station, self._path()), then)
 
     def undo(self, step: str) -> None:
         """Take back a step."""

@@ -7,19 +7,22 @@ import signal
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QSpinBox
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLabel, QPushButton, QSpinBox
 
 from app.gui.pages.cell.page import CellPage
 from app.gui.pages.cell.step_list import StepRow
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
+from app.operations.calibration.cup import enter_cup
+from app.operations.calibration.cup_entry import entry_of
 from app.operations.calibration.provenance import read_looks, runs
 from app.operations.calibration.steps import enter_board
 from core.calibration.board import BoardSpec
+from core.progress import Reporter
 from hardware.cell import read_cell
 
-STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference"]
+STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
 N_VIEWS = 8
 
 
@@ -172,6 +175,56 @@ def test_a_damaged_record_is_said_instead_of_the_steps(qtbot, desk, page, cells)
     assert text(page, "headline") == "The cell cannot be shown."
     assert "board.json" in text(page, "details")
     assert not button(page).isEnabled()
+
+
+def test_a_cup_is_entered_refused_with_the_reason_and_undone(qtbot, desk, page):
+    path = new_cell("bench", is_simulated=True)
+    choose(qtbot, desk, page, path)
+    pick(qtbot, page, "dry-run")
+    assert text(page, "obstacle") == "First comes the step “Cup and station”."
+    pick(qtbot, page, "cup")
+    form = page.side.options.cup
+    assert form.entry == entry_of(read_cell(path)), "nothing was changed yet"
+    assert not form.read.isVisible(), "nobody guides a simulated arm"
+    failed = []
+    desk.jobs.failed.connect(lambda job, what: failed.append(str(what)))
+    page.findChild(QDoubleSpinBox, "station_x").setValue(900.0)
+    page.findChild(QDoubleSpinBox, "cup_length").setValue(95.0)
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: bool(failed))
+    assert "cannot pour from any side" in failed[0]
+    settle(qtbot, desk, page)
+    assert read_cell(path).cup is None
+    pick(qtbot, page, "cup")
+    page.findChild(QDoubleSpinBox, "station_x").setValue(-490.0)
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: states(page)["cup"] == "fresh")
+    settle(qtbot, desk, page)
+    assert read_cell(path).cup.length_m == pytest.approx(0.095)
+    assert read_cell(path).place.cup_station_m[0] == pytest.approx(-0.49)
+    pick(qtbot, page, "cup")
+    assert "of 8 sides" in text(page, "step_figure")
+    press(qtbot, page, "undo")
+    qtbot.waitUntil(lambda: states(page)["cup"] == "empty")
+    assert read_cell(path).cup is None
+
+
+@pytest.mark.system
+@pytest.mark.punctual
+def test_a_dry_run_goes_through_a_pour_and_the_arm_is_shown(qtbot, desk, page):
+    path = new_cell("bench", is_simulated=True)
+    enter_cup(path, entry_of(read_cell(path)), Reporter())
+    choose(qtbot, desk, page, path)
+    pick(qtbot, page, "dry-run")
+    seen, failed = [], []
+    desk.arm.changed.connect(lambda: seen.append(desk.arm.status))
+    desk.jobs.failed.connect(lambda job, what: failed.append(str(what)))
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=240_000)
+    settle(qtbot, desk, page)
+    assert not failed and states(page)["dry-run"] == "fresh"
+    joints = [one.state.joints_rad for one in seen if one is not None and one.state is not None]
+    assert max(abs(one - joints[0]).max() for one in joints) > 0.5
 
 
 @pytest.mark.system

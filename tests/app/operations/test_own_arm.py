@@ -1,0 +1,57 @@
+"""A cell whose arm was exchanged since it was calibrated says so when the arm is tried or connected."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from app.operations.arm import connected
+from app.operations.calibration.cell_file import new_cell, write_hand_eye
+from app.operations.calibration.devices import examine_device
+from core.progress import Reporter
+from hardware.cell import open_arm, read_cell
+from hardware.cell.own_arm import own_kinematics
+from hardware.simulation.ur_controller.process import ControllerProcess
+
+pytest.importorskip("rtde_control")
+
+pytestmark = pytest.mark.system
+SAID = "is not the one with which the real was calibrated"
+
+
+class Warnings(Reporter):
+    def __init__(self):
+        super().__init__()
+        self.said = []
+
+    def warn(self, sentence):
+        self.said.append(sentence)
+
+
+def warned(path):
+    reporter = Warnings()
+    with connected(open_arm(read_cell(path)), None, reporter):
+        return reporter.said
+
+
+def test_an_arm_that_was_exchanged_since_the_calibration_is_warned_of(tmp_path, monkeypatch):
+    monkeypatch.setenv("POURSIGHT_CELLS", str(tmp_path / "cells"))
+    address = ".".join(["127", *(str(random.Random().randint(2, 250)) for _ in range(3))])
+    path = new_cell("real", is_simulated=False, address=address)
+    pose, home_rad = read_cell(path).camera.pose, list(read_cell(path).robot.home_rad)
+    with ControllerProcess("UR5", "3.15", address, home_rad) as controller:
+        assert warned(path) == [], "a cell that was written by hand knows no arm"
+        checksum = own_kinematics(read_cell(path)).checksum
+        write_hand_eye(path, pose, checksum)
+        assert read_cell(path).robot.kinematics_checksum == checksum
+        assert warned(path) == []
+        assert examine_device(path, "arm").problem is None
+        controller.command("calibration 4.5")
+        [sentence] = warned(path)
+        assert SAID in sentence and checksum in sentence and "calibrate the cell again" in sentence
+        assert SAID in examine_device(path, "arm").problem
+        write_hand_eye(path, pose, own_kinematics(read_cell(path)).checksum)
+        assert warned(path) == []
+    write_hand_eye(path, pose)
+    assert read_cell(path).robot.kinematics_checksum is None
