@@ -203,7 +203,7 @@ def style_sheet(theme: Theme) -> str:
     QPushButton:focus {{ border: 2px solid {t.accent}; padding: 4px 11px; }}
     QPushButton:disabled {{ color: {t.muted}; background: {t.window}; }}
     QPushButton:checked {{
-        background: {t.surface}; color: {t.accent}; border: 2px solid {t.accent}; font-weight: 600;
+        background: {t.surface}; color: {t.accent}; border: 2px solid {t.accent};
         padding: 4px 11px;
     }}
     QPushButton:checked:focus {{ border-color: {t.text}; }}
