@@ -191,7 +191,7 @@ def test_a_damaged_session_is_refused_in_a_sentence(window, tmp_path):
 def test_both_themes_reach_the_widgets(window, qapp):
     for theme in (DARK, LIGHT):
         apply_theme(qapp, theme)
-        assert theme_of(window.top_bar) is theme
+        assert theme_of(window.top_bar) is theme_of(window.top_bar.stop) is theme  # STOP is red in both
 
 
 def test_the_overview_lists_every_key_of_the_menus(window):
