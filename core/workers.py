@@ -94,12 +94,17 @@ _channel: _Channel | None = None  # set once per worker process, by its initiali
 _slot: int | None = None
 
 
+def usable_processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
 class WorkerPool:
     """A few worker processes (spawned, so that they share no state), used as a context manager."""
 
     def __init__(self, workers: int | None = None) -> None:
         """Make a pool of `workers` processes, by default one for each processor this process may use."""
-        self.workers = workers or len(os.sched_getaffinity(0))
+        self.workers = workers or usable_processors()
         self._executor: ProcessPoolExecutor | None = None
         self._processes: list[Any] = []
         self._starting: list[Future[Any]] = []

@@ -31,7 +31,7 @@ from core.errors import PoursightError
 
 app = typer.Typer(
     name="poursight",
-    help="Can I pour into it? Scan an unknown object, imagine whether it contains, and where to pour.",
+    help="Can I pour into it? Scan an unknown object, test whether it holds candies, and find where to pour.",
     invoke_without_command=True,
     add_completion=False,
     pretty_exceptions_enable=False,

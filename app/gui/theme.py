@@ -130,8 +130,11 @@ THEMES = {theme.name: theme for theme in (LIGHT, DARK)}
 
 
 def theme_of(widget: QWidget) -> Theme:
-    """Return the theme a widget is shown in; Qt repaints the widget when it changes."""
-    window = widget.palette().color(QPalette.ColorRole.Window)
+    """Return the theme a widget is shown in; Qt repaints the widget when it changes.
+
+    Its window tells: a widget with a ground of its own, such as STOP, has that in its palette.
+    """
+    window = widget.window().palette().color(QPalette.ColorRole.Window)
     return DARK if window.lightnessF() < 0.5 else LIGHT
 
 
@@ -203,7 +206,7 @@ def style_sheet(theme: Theme) -> str:
     QPushButton:focus {{ border: 2px solid {t.accent}; padding: 4px 11px; }}
     QPushButton:disabled {{ color: {t.muted}; background: {t.window}; }}
     QPushButton:checked {{
-        background: {t.surface}; color: {t.accent}; border: 2px solid {t.accent}; font-weight: 600;
+        background: {t.surface}; color: {t.accent}; border: 2px solid {t.accent};
         padding: 4px 11px;
     }}
     QPushButton:checked:focus {{ border-color: {t.text}; }}

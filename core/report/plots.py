@@ -171,7 +171,7 @@ def _draw_frame(axes: Axes, center_m: FloatArray, axes_m: FloatArray, colors: Pa
         color=colors.text,
         markeredgecolor=colors.background,
         markeredgewidth=1.2,
-        label="centre $p_E$",
+        label="pour centre",
     )
 
 
@@ -265,7 +265,7 @@ def _draw_scale(figure: Figure, axes: PolarAxes, shades: Any, colors: Palette) -
 
 def _describe(figure: Figure, grid: PourGrid, choice: PourChoice | None, colors: Palette) -> None:
     rings = ", ".join(f"{indent_m * MM:.0f}" for indent_m in grid.indent_m)
-    lines = [f"Rings, from the inside out: {rings} mm from the centre $p_E$"]
+    lines = [f"Rings, from the inside out: {rings} mm from the pour centre"]
     lines.append("Directions anticlockwise from the x-axis")
     if choice is not None:
         lines[-1] += "; outlined: chosen"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, QObject, QSize, Qt
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QScrollArea, QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
@@ -10,7 +10,7 @@ from typing_extensions import override
 from app.gui.desk.desk import Desk
 from app.gui.theme import GRID_PX
 
-SIDE_PX = 380
+SIDE_PX, _NARROWEST_SIDE_PX = 380, 300
 PRIMARY = "primary"
 """Object name of the one button that a page is for."""
 
@@ -69,6 +69,23 @@ class Page(QWidget):
         self.refresh()
 
 
+class _SideArea(QScrollArea):
+    """Scrolls downwards only, and is never narrower than what it holds: sideways it would be cut off."""
+
+    @override
+    def minimumSizeHint(self) -> QSize:
+        content = self.widget()
+        content_px = 0 if content is None else content.minimumSizeHint().width()
+        bar_px = self.verticalScrollBar().sizeHint().width()
+        return QSize(max(content_px + bar_px, _NARROWEST_SIDE_PX), super().minimumSizeHint().height())
+
+    @override
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest:
+            self.updateGeometry()
+        return super().eventFilter(watched, event)
+
+
 class SidePanel(QFrame):
     """The few controls of a page, scrolled when they are many, above its buttons.
 
@@ -80,13 +97,12 @@ class SidePanel(QFrame):
     def __init__(self, primary_text: str) -> None:
         super().__init__()
         self.setObjectName("side_panel")
-        self.setMinimumWidth(300)
         inside = QWidget()
         inside.setObjectName("side_body")
         self.body = QVBoxLayout(inside)
         self.body.setContentsMargins(2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX, GRID_PX)
         self.body.setSpacing(GRID_PX)
-        area = QScrollArea()
+        area = _SideArea()
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setWidgetResizable(True)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -105,6 +121,11 @@ class SidePanel(QFrame):
         whole.setSpacing(0)
         whole.addWidget(area, 1)
         whole.addLayout(self._buttons)
+
+    @override
+    def sizeHint(self) -> QSize:
+        """Return the usual width, also for a panel that is shown later than its page."""
+        return QSize(SIDE_PX, super().sizeHint().height())
 
     def add_button(self, button: QPushButton) -> None:
         """Put a second button to the left of the primary one."""

@@ -25,6 +25,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.gui.pages.registry import OTHERS, WORK, tab_facts
+from app.gui.shell.guide import Guide
 from app.gui.shell.window import MainWindow
 from app.gui.stop.panel import STOP_KEYS
 from app.gui.theme import GRID_PX, apply_theme, theme_named
@@ -73,6 +74,10 @@ class Menus(QMenuBar):
         """Show all keys."""
         ShortcutOverview(self, self._window).open()
 
+    def show_guide(self) -> None:
+        """Show the operator's guide beside the window."""
+        Guide(self._window).show()
+
     def _add_session_menu(self) -> None:
         menu = self.addMenu(self.tr("&Session"))
         _add(menu, self.tr("&New…"), "Ctrl+N", self.new_session)
@@ -119,6 +124,7 @@ class Menus(QMenuBar):
 
     def _add_help_menu(self) -> None:
         menu = self.addMenu(self.tr("&Help"))
+        _add(menu, self.tr("&Operator's guide"), "Shift+F1", self.show_guide)
         _add(menu, self.tr("&Keys"), "F1", self.show_keys)
         _add(menu, self.tr("&About"), "", self._show_about)
 

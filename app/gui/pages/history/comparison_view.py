@@ -1,4 +1,4 @@
-"""Two sessions side by side: their cards, and line by line what they share and what differs."""
+"""Two sessions side by side: their cards, then their models and pours, or line by line what differs."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
     QHeaderView,
+    QStackedWidget,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -21,6 +22,9 @@ from typing_extensions import override
 
 from app.gui.desk.stage_words import stage_words
 from app.gui.pages.history.cards import CardList
+from app.gui.pages.history.compared_models import ComparedModel
+from app.gui.pages.history.comparison_pictures import ComparisonPictures
+from app.gui.pages.mode_row import ModeRow
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.labels import text_label
 from app.gui.views.painting import make_bare, tabular
@@ -42,6 +46,7 @@ class ComparisonView(QWidget):
     Attributes:
         comparison: what is shown; none at first.
         cards: the two sessions.
+        pictures: their models and pours.
     """
 
     left = Signal()
@@ -55,21 +60,49 @@ class ComparisonView(QWidget):
         self.cards.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.cards.setFixedHeight(self.cards.card_height_px)
         self._table = _table()
+        self.pictures = ComparisonPictures()
+        self._below = QStackedWidget()
+        self._below.addWidget(self.pictures)
+        self._below.addWidget(self._table)
         column = QVBoxLayout(self)
         column.setContentsMargins(2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX, 0)
         column.setSpacing(GRID_PX)
         column.addLayout(self._build_head())
         column.addWidget(self.cards)
-        column.addWidget(self._table, 1)
+        column.addWidget(self._below, 1)
 
     def show_comparison(self, comparison: Comparison) -> None:
         """Show two sessions."""
         self.comparison = comparison
+        self.pictures.clear()
         self.cards.show_sessions((comparison.a, comparison.b))
         n = sum(not row.is_same for row in comparison.rows)
         said = self.tr("{n} of {all} lines differ ({mark})")
         self._count.setText(said.format(n=n, all=len(comparison.rows), mark=_DIFFERS))
         self._fill()
+
+    def show_models(self, models: tuple[ComparedModel, ComparedModel]) -> None:
+        """Show the two sessions' models and pours, unless others are compared by now."""
+        comparison = self.comparison
+        if comparison is not None and [model.folder for model in models] == [
+            comparison.a.path,
+            comparison.b.path,
+        ]:
+            self.pictures.show_models(models)
+
+    def _choose(self, mode: str) -> None:
+        self._below.setCurrentWidget(self._table if mode == "lines" else self.pictures)
+        if mode != "lines":
+            self.pictures.setCurrentIndex(("models", "pours").index(mode))
+        self._only.setVisible(mode == "lines")
+
+    def _build_modes(self) -> ModeRow:
+        modes = ModeRow("comparison")
+        modes.add("models", self.tr("Models"), self.tr("Both from the same place, at the same scale"))
+        modes.add("pours", self.tr("Pours"), self.tr("The two wheels of imagined pours"))
+        modes.add("lines", self.tr("Line by line"), self.tr("What the two share, and what differs"))
+        modes.chosen.connect(self._choose)
+        return modes
 
     def _build_head(self) -> QHBoxLayout:
         title = text_label("", "title", self.tr("Two sessions compared"))
@@ -79,6 +112,7 @@ class ComparisonView(QWidget):
         self._only.setObjectName("only_differences")
         self._only.setToolTip(self.tr("Hide what is the same in both sessions"))
         self._only.toggled.connect(lambda _: self._fill())
+        self._only.hide()
         leave = QShortcut(QKeySequence(QKeySequence.StandardKey.Cancel), self)
         leave.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
         leave.activated.connect(self.left)
@@ -87,6 +121,7 @@ class ComparisonView(QWidget):
         row.addWidget(title)
         row.addWidget(self._count, 1)
         row.addWidget(self._only)
+        row.addWidget(self._build_modes())
         return row
 
     def _fill(self) -> None:

@@ -12,6 +12,7 @@ from typing_extensions import override
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.history import words
+from app.gui.pages.history.compared_models import ComparedModel, read_compared
 from app.gui.pages.history.comparison_view import ComparisonView
 from app.gui.pages.history.library_view import Found, LibraryView, Shelf
 from app.gui.pages.history.session_side import (
@@ -164,8 +165,8 @@ class HistoryPage(Page):
     def _remark_words(self, selected: list[SessionSummary]) -> str:
         if self._is_comparing:
             return self.tr(
-                "Each line compares one property of the two sessions. The last column shows what changes "
-                "from the left session to the right one."
+                "Both models are seen from the same place, at the same scale: turn one, and the other turns. "
+                "Line by line, the last column shows what changes from the left session to the right one."
             )
         if not selected:
             return self.tr("Select a session to see its details.")
@@ -262,6 +263,8 @@ class HistoryPage(Page):
     def _show_comparison(self, comparison: Comparison) -> None:
         self._comparison.show_comparison(comparison)
         self._left.setCurrentWidget(self._comparison)
+        folders = comparison.a.path, comparison.b.path
+        self.desk.background.run("history models", partial(_read_both, folders), self._comparison.show_models)
         self._update()
 
     def _leave_comparison(self) -> None:
@@ -297,3 +300,7 @@ class HistoryPage(Page):
 
     def _start(self) -> None:
         self.desk.page_wanted.emit("welcome" if self.desk.workspace.session is None else "scan")
+
+
+def _read_both(folders: tuple[Path, Path]) -> tuple[ComparedModel, ComparedModel]:
+    return read_compared(folders[0]), read_compared(folders[1])

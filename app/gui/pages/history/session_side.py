@@ -12,7 +12,6 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QFileDialog,
     QFormLayout,
-    QHBoxLayout,
     QLabel,
     QPushButton,
     QSizePolicy,
@@ -185,7 +184,7 @@ class SessionPart(QWidget):
             rows.addLayout(row_of(*(self._exports[kind] for kind in kinds)))
         return rows
 
-    def _build_keeping(self) -> QHBoxLayout:
+    def _build_keeping(self) -> QVBoxLayout:
         show = _button("show_folder", self.tr("Show folder"))
         show.clicked.connect(lambda: open_folder(self._folder))
         self._forget = _button(
@@ -198,7 +197,11 @@ class SessionPart(QWidget):
         self._trash.clicked.connect(self.trash_wanted)
         self._rename = _button("rename", self.tr("Rename…"), self.tr("Its folder keeps its name"))
         self._rename.clicked.connect(self.rename_wanted)
-        return row_of(show, self._rename, self._forget, self._trash)
+        rows = QVBoxLayout()
+        rows.setSpacing(GRID_PX)
+        for widgets in ((show, self._rename, self._trash), (self._forget,)):
+            rows.addLayout(row_of(*widgets))
+        return rows
 
     def show_session(
         self, session: SessionSummary, *, is_elsewhere: bool, can_compare: bool, is_idle: bool

@@ -15,6 +15,7 @@ from app.gui.desk.workspace import IMAGINING
 from app.gui.pages.background_page import BackgroundPage
 from app.gui.pages.mode_row import ModeRow
 from app.gui.pages.page import SidePanel, SplitView
+from app.gui.pages.pour_cells import pour_cells
 from app.gui.pages.pours.choice import ChoiceBox, SelectedBox
 from app.gui.pages.pours.comparison import CompareBox, OtherPours, VariantRun, load_grid
 from app.gui.pages.pours.how_much import HowMuchBox
@@ -273,28 +274,4 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
 
 def cells_of(pours: ShownPours) -> list[MappedPour]:
     """Return a grid's pours as the map takes them."""
-    grid = pours.grid
-    if grid is None:
-        return []
-    p, spread, has_spread = grid.p, grid.p_spread, grid.n_in.shape[2] > 1
-    risk = pours.risk
-    clean = None if risk is None else risk.clean_at_least
-    cells = []
-    for i, theta_rad in enumerate(grid.theta_rad):
-        for j, indent_m in enumerate(grid.indent_m):
-            found = pours.feasibility(i, j)
-            cells.append(
-                MappedPour(
-                    i,
-                    j,
-                    float(theta_rad),
-                    float(indent_m),
-                    float(p[i, j]),
-                    float(spread[i, j]) if has_spread else None,
-                    None if found is None else found.is_feasible,
-                    "" if found is None else found.reason,
-                    None if clean is None else float(clean[i, j]),
-                    0 if risk is None else int(risk.n_tries[i, j]),
-                )
-            )
-    return cells
+    return [] if pours.grid is None else pour_cells(pours.grid, pours.risk, pours.motions)

@@ -104,7 +104,8 @@ def caption(model: ShownModel | None, mode: str, difference_m: FloatArray | None
             "{mean:.2f} mm on average, 95 % of it within {most:.2f} mm.",
         ).format(mean=mean_mm, most=most_mm)
     return translate(
-        "ModelModes", "Drag to rotate, Shift and drag to move, wheel to zoom, double-click to centre."
+        "ModelModes",
+        "Drag to rotate, Shift and drag to move, wheel to zoom, double-click to centre. Squares: 1 cm.",
     )
 
 

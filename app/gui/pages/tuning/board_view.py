@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-from PySide6.QtCore import QCoreApplication, QModelIndex, QPersistentModelIndex, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QPainter, QPalette
+from PySide6.QtCore import QCoreApplication, QSize, Qt, Signal
+from PySide6.QtGui import QIcon, QImage, QPixmap
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHBoxLayout,
@@ -13,18 +11,16 @@ from PySide6.QtWidgets import (
     QPushButton,
     QSplitter,
     QStackedWidget,
-    QStyle,
-    QStyledItemDelegate,
-    QStyleOptionViewItem,
     QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
     QWidget,
 )
-from typing_extensions import override
 
-from app.gui.pages.tuning.words import differences_text, measure_meaning, measure_noun
-from app.gui.theme import GRID_PX, theme_of
+from app.gui.pages.tuning.object_pictures import PICTURE_PX
+from app.gui.pages.tuning.score_cell import CELL_ROLE, ScoreCell, ScoreDelegate
+from app.gui.pages.tuning.words import differences_text, measure_meaning, measure_noun, object_title
+from app.gui.theme import GRID_PX
 from app.gui.views.fact_table import Column, FactTable, Row
 from app.gui.views.labels import heading, text_label
 from app.gui.views.painting import tabular
@@ -34,76 +30,7 @@ from core.evaluation.verdicts import ObjectVerdict, is_right
 from core.parameters import Parameters
 from core.report.sentences import duration_text
 
-CELL_ROLE = Qt.ItemDataRole.UserRole
-_SET_PX, _BAR_PX, _SETS_PX = 136, 5, 176
-
-
-@dataclass(frozen=True)
-class ScoreCell:
-    """What a cell shows.
-
-    Attributes:
-        score: capacity share or Omega; none if the object was not judged, or could not be.
-        threshold: above which the object is a container.
-        is_right: whether it agrees with the label; none if that cannot be said.
-        word: what is said beside the number, such as "wrong"; may be empty.
-        is_flipped: whether the verdict differs from the column before.
-    """
-
-    score: float | None
-    threshold: float
-    is_right: bool | None
-    word: str = ""
-    is_flipped: bool = False
-
-    @property
-    def text(self) -> str:
-        """The number with what is said of it."""
-        number = "--" if self.score is None else f"{self.score:.3f}"
-        return "   ".join(filter(None, (number, self.word, "⇄" if self.is_flipped else "")))
-
-
-class _ScoreDelegate(QStyledItemDelegate):
-    """Draws a bar with the threshold under the text of the cells that hold a `ScoreCell`."""
-
-    def __init__(self, view: QWidget) -> None:
-        super().__init__(view)
-        self._view = view
-
-    @override
-    def sizeHint(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> QSize:
-        hint = super().sizeHint(option, index)
-        return QSize(hint.width(), max(hint.height(), 4 * GRID_PX))
-
-    @override
-    def initStyleOption(
-        self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
-    ) -> None:
-        super().initStyleOption(option, index)
-        cell = index.data(CELL_ROLE)
-        if isinstance(cell, ScoreCell) and cell.is_right is False:
-            option.font = tabular(option.font, bold=True)
-            option.palette.setColor(QPalette.ColorRole.Text, theme_of(self._view).color("attention"))
-
-    @override
-    def paint(
-        self, painter: QPainter, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex
-    ) -> None:
-        super().paint(painter, option, index)
-        cell = index.data(CELL_ROLE)
-        if not isinstance(cell, ScoreCell) or cell.score is None:
-            return
-        theme = theme_of(self._view)
-        is_selected = bool(option.state & QStyle.StateFlag.State_Selected)
-        box = QRectF(option.rect).adjusted(GRID_PX / 2, 0, -GRID_PX, 0)
-        bar = QRectF(box.left(), box.bottom() - _BAR_PX - 3, box.width(), _BAR_PX)
-        painter.fillRect(bar, theme.color("muted" if is_selected else "raised"))
-        filled = QRectF(bar)
-        filled.setWidth(bar.width() * min(max(cell.score, 0.0), 1.0))
-        painter.fillRect(filled, theme.color("on_accent" if is_selected else "accent"))
-        threshold = bar.left() + bar.width() * min(max(cell.threshold, 0.0), 1.0)
-        mark = QRectF(threshold - 1, bar.top() - 2, 2, bar.height() + 4)
-        painter.fillRect(mark, theme.color("on_accent" if is_selected else "text"))
+_SET_PX, _SETS_PX = 136, 140
 
 
 class ObjectTable(QTreeWidget):
@@ -115,10 +42,10 @@ class ObjectTable(QTreeWidget):
         self.setAccessibleName(self.tr("Objects and their scores"))
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.setAlternatingRowColors(True)
-        self.setUniformRowHeights(True)
+        self.setIconSize(QSize(*PICTURE_PX))
         self.setIndentation(16)
         self.setFrameShape(QTreeWidget.Shape.NoFrame)
-        self.setItemDelegate(_ScoreDelegate(self))
+        self.setItemDelegate(ScoreDelegate(self))
         self.setFont(tabular(self.font()))
         self.header().setStretchLastSection(False)
         self.header().setMinimumSectionSize(_SET_PX)
@@ -142,6 +69,11 @@ class ObjectTable(QTreeWidget):
             for one in objects:
                 self._show_row(board, one)
 
+    def show_picture(self, name: str, picture: QImage) -> None:
+        """Show what an object looks like."""
+        if name in self._rows:
+            self._rows[name].setIcon(0, QIcon(QPixmap.fromImage(picture)))
+
     def show_verdict(self, board: Board, name: str) -> None:
         """Update one object."""
         one = next((each for each in board.objects if each.name == name), None)
@@ -164,9 +96,9 @@ class ObjectTable(QTreeWidget):
             group.setData(0, CELL_ROLE, f"group {label}")
             group.setFont(0, tabular(self.font(), bold=True))
             for one in members:
-                row = self._rows[one.name] = QTreeWidgetItem(group, [one.name])
+                row = self._rows[one.name] = QTreeWidgetItem(group, [object_title(one)])
                 row.setData(0, CELL_ROLE, one.name)
-                row.setToolTip(0, "\n".join(filter(None, (one.category, one.notes, str(one.mesh)))))
+                row.setToolTip(0, "\n".join(filter(None, (one.name, one.category, one.notes, str(one.mesh)))))
             group.setFirstColumnSpanned(True)
             group.setExpanded(True)
 
@@ -197,7 +129,7 @@ class ObjectTable(QTreeWidget):
             cell = self._cell(one, each, verdict, is_flipped)
             row.setText(column, cell.text)
             row.setData(column, CELL_ROLE, cell)
-            row.setTextAlignment(column, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop)
+            row.setTextAlignment(column, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
             row.setToolTip(column, self._tip(verdict, each, is_flipped))
             before = is_open if is_open is not None else before
 
@@ -276,7 +208,8 @@ class SummaryTable(FactTable):
             tip = f"{one.provenance.sentence}\n{tip}"
         noun = measure_noun(one.measure)
         extremes = (found.ends.smallest_container, found.ends.largest_other)
-        named = (None if extreme is None else f"{extreme[0]:.3f}  {extreme[1]}" for extreme in extremes)
+        titles = {each.name: object_title(each) for each in board.objects}
+        named = (None if end is None else f"{end[0]:.3f}  {titles.get(end[1], end[1])}" for end in extremes)
         values = (name, noun[:1].upper() + noun[1:], right, found.ends.value, one.threshold, *named)
         return Row(
             values, tooltip=tip, needs_attention=found.ends.value is not None and found.ends.value <= 0

@@ -12,7 +12,7 @@ from app.gui.pages.tuning.fit_view import FitView
 from app.gui.pages.tuning.words import fitted_tip, fitted_title, measure_noun, range_text, signed
 from app.gui.remedies import worded
 from app.gui.theme import GRID_PX
-from app.gui.views.labels import heading, text_label
+from app.gui.views.labels import heading, say, text_label
 from app.gui.views.painting import tabular
 from app.jobs.host import Host
 from app.jobs.messages import Failed
@@ -30,6 +30,8 @@ from core.evaluation.labels import LabelledObject, objects_to_fit
 from core.evaluation.trials import Measure
 from core.evaluation.verdicts import measure_by
 from core.parameters import Parameters, apply_settings
+from core.report.sentences import duration_text
+from core.workers import usable_processors
 
 _PATIENCE_S = 5.0
 """A stopped fit sums up its best before it ends."""
@@ -82,6 +84,8 @@ class FitSide(SidePanel):
         self.body.addSpacing(GRID_PX)
         self.body.addWidget(heading(self.tr("Search")))
         self.body.addLayout(self._build_search())
+        self._time_note = text_label("fit_time")
+        self.body.addWidget(self._time_note)
         self.body.addStretch(1)
 
     def _build_parameters(self) -> QGridLayout:
@@ -115,6 +119,12 @@ class FitSide(SidePanel):
         self._seeds = self._number("fit_seeds", _SEEDS, 20, self.tr("Each object is judged with each seed"))
         tip = self.tr("Sets of values to try; the first is the start")
         self._trials = self._number("fit_trials", _TRIALS, 1000, tip)
+        for changing in (
+            self._seeds.valueChanged,
+            self._trials.valueChanged,
+            self._source.currentIndexChanged,
+        ):
+            changing.connect(lambda _: self.changed.emit())
         form = QFormLayout()
         form.setHorizontalSpacing(2 * GRID_PX)
         form.setVerticalSpacing(GRID_PX)
@@ -161,6 +171,28 @@ class FitSide(SidePanel):
             "best."
         )
         self._measure_note.setText(said.format(measure=measure_noun(measure)))
+
+    def show_time(self, seconds_each: float | None, n_objects: int) -> None:
+        """Say how long the fit takes at most.
+
+        Args:
+            seconds_each: that judging an object once takes on average; none if none was judged yet.
+            n_objects: to be judged in each trial, with each seed.
+        """
+        if seconds_each is None:
+            say(self._time_note, self.tr("'Run all' first: then it is known how long a fit takes."))
+            return
+        n_judged = self._trials.value() * self._seeds.value() * n_objects
+        said = self.tr(
+            "Takes about {time} at most: {n} times {each:.1f} s, {workers} at a time. "
+            "Trials that cannot become the best are given up early."
+        )
+        if self._source.currentData() == "scan":
+            said += " " + self.tr("Scanning the objects once comes on top.")
+        n_workers = usable_processors()
+        seconds = n_judged * seconds_each / n_workers
+        text = said.format(time=duration_text(seconds), n=n_judged, each=seconds_each, workers=n_workers)
+        say(self._time_note, text)
 
     def show_objects(self, objects: tuple[LabelledObject, ...], problem: str, can_choose: bool) -> None:
         """Say what is fitted to.
@@ -230,7 +262,18 @@ class FitPart(QObject):
         except InputError as error:
             self._objects, problem = (), worded(error)
         self.side.show_objects(self._objects, problem, 0 < n_marked < len(labelled))
+        self.side.show_time(self._seconds_each(self._board), len(self._objects))
         self.side.primary.setEnabled(self._jobs.is_idle and bool(self._objects))
+
+    def _seconds_each(self, board: Board) -> float | None:
+        """How long judging one of the chosen objects takes, by the newest set that knows any of them."""
+        names = {one.name for one in self._objects}
+        for one in reversed(board.sets):
+            verdicts = [verdict for name, verdict in board.of(one).items() if name in names]
+            seconds = [verdict.seconds for verdict in verdicts if verdict.score is not None]
+            if seconds:
+                return sum(seconds) / len(seconds)
+        return None
 
     def start(self) -> None:
         """Fit what is chosen."""

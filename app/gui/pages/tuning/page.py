@@ -6,20 +6,18 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from PySide6.QtCore import Signal
 from PySide6.QtGui import QUndoCommand
-from PySide6.QtWidgets import QFileDialog, QHBoxLayout, QLineEdit, QPushButton, QStackedWidget, QVBoxLayout
+from PySide6.QtWidgets import QFileDialog, QStackedWidget, QVBoxLayout
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.page import Page, SidePanel, SplitView
-from app.gui.pages.saved_presets import preset_names, preset_tips, remember_preset, save_preset
+from app.gui.pages.saved_presets import remember_preset, save_preset
 from app.gui.pages.tuning.board_view import BoardView
 from app.gui.pages.tuning.fit import FitPart
+from app.gui.pages.tuning.object_pictures import ObjectPictures
+from app.gui.pages.tuning.side import TuningSide
 from app.gui.remedies import worded
-from app.gui.theme import GRID_PX
-from app.gui.views.labels import text_label
-from app.gui.views.parameter_editor.editor import ParameterEditor
 from app.jobs.tuning_work import FitDone, JudgingTask, TuningWork, VerdictReached
 from app.library.places import preset_file
 from app.operations.tuning_board import (
@@ -35,9 +33,7 @@ from core.errors import InputError, PoursightError
 from core.evaluation.fitting.provenance import write_fitted_preset
 from core.evaluation.labels import LabelledObject
 from core.parameters import Parameters, load_preset
-from core.stages import groups_of
 
-GROUPS = tuple(group for group in groups_of("collision", "judgement", "retention") if group != "seed")
 Draft = tuple[str, Parameters]  # the preset that the next run started from, and its parameters
 
 
@@ -54,6 +50,7 @@ class TuningPage(Page):
         self._host = desk.jobs.make_host(TuningWork, "tunes")
         self._view = BoardView()
         self._side = TuningSide()
+        self._pictures = ObjectPictures(self)
         self._fit: FitPart | None = None
         self._views, self._sides = QStackedWidget(), QStackedWidget()
         self._views.addWidget(self._view)
@@ -76,6 +73,7 @@ class TuningPage(Page):
         view.export_wanted.connect(self._ask_for_export)
         view.remove_wanted.connect(self._remove)
         view.set_selected.connect(self._take_set)
+        self._pictures.drawn.connect(view.objects.show_picture)
         view.objects.itemSelectionChanged.connect(self._update_buttons)
         jobs.event_received.connect(self._hear)
         jobs.started.connect(lambda *_: self._update_buttons())
@@ -122,6 +120,7 @@ class TuningPage(Page):
                 "candies can fill, or Omega, the share of the candies that stay."
             ),
         )
+        self._pictures.show(() if board is None else board.objects)
         self._show_draft()
 
     def _save(self, board: Board) -> None:
@@ -319,63 +318,6 @@ class TuningPage(Page):
         except OSError as error:
             said = self.tr("{path} cannot be written ({why}); choose another file.")
             self.desk.message.emit(said.format(path=path, why=error.strerror))
-
-
-class TuningSide(SidePanel):
-    """Parameter editor, the preset's name, and the buttons that run.
-
-    Attributes:
-        editor: of the parameters that decide the score.
-        fit: leads to fitting them.
-        save_wanted: the name of a preset to be saved.
-    """
-
-    save_wanted = Signal(str)
-
-    def __init__(self) -> None:
-        super().__init__("")
-        self.primary.setText(self.tr("Run all"))
-        self.run_selected = QPushButton(self.tr("Run selected"))
-        self.run_selected.setObjectName("run_selected")
-        self.run_selected.setMinimumHeight(5 * GRID_PX)
-        self.fit = QPushButton(self.tr("Fit…"))
-        self.fit.setObjectName("fit")
-        self.fit.setMinimumHeight(5 * GRID_PX)
-        self.fit.setToolTip(self.tr("Search for parameters that separate containers from other objects"))
-        self.add_button(self.fit)
-        self.add_button(self.run_selected)
-        self.column_note = text_label("column_note")
-        self.editor = ParameterEditor(GROUPS)
-        self._offer_presets()
-        self.body.addWidget(self.column_note)
-        self.body.addWidget(self.editor, 1)
-        self.body.addLayout(self._build_saving())
-
-    def _build_saving(self) -> QHBoxLayout:
-        self._name = QLineEdit()
-        self._name.setObjectName("preset_name")
-        self._name.setAccessibleName(self.tr("Name of the preset"))
-        self._name.setPlaceholderText(self.tr("name of a preset"))
-        self._save = QPushButton(self.tr("Save as preset"))
-        self._save.setObjectName("save_preset")
-        self._save.setEnabled(False)
-        self._save.setToolTip(self.tr("Save these parameters; every list of presets will offer them"))
-        self._name.textChanged.connect(lambda text: self._save.setEnabled(bool(text.strip())))
-        self._save.clicked.connect(lambda: self.save_wanted.emit(self._name.text().strip()))
-        row = QHBoxLayout()
-        row.setSpacing(GRID_PX)
-        row.addWidget(self._name, 1)
-        row.addWidget(self._save)
-        return row
-
-    def preset_saved(self) -> None:
-        """A preset was saved: offer it, and forget its name."""
-        self._offer_presets()
-        self._name.clear()
-
-    def _offer_presets(self) -> None:
-        names = preset_names()
-        self.editor.set_preset_names(names, preset_tips(names))
 
 
 class _DraftEdit(QUndoCommand):

@@ -10,6 +10,7 @@ from app.gui.views.parameter_editor.naming import Display, group_title, titles
 from core.evaluation.fitting.fitted import FittedParameter
 from core.evaluation.fitting.scores import FitScore
 from core.evaluation.fitting.search import FitStep
+from core.evaluation.labels import LabelledObject
 from core.evaluation.trials import Measure
 from core.parameters import FieldFacts, Parameters, describe, difference
 
@@ -24,6 +25,14 @@ def measure_meaning(measure: Measure) -> str:
     if measure == "Omega":
         return _tr("Omega: share of the candies that stayed.")
     return _tr("Capacity share: how much of its bulk is hollow, so that candies stay in it.")
+
+
+def object_title(one: LabelledObject) -> str:
+    """Return what people call an object: its id as words, and what it is where the id does not say so."""
+    words = one.name.replace("_", " ").replace("-", " ").strip()
+    title = words[:1].upper() + words[1:]
+    says_it = not one.category or one.category.replace("_", " ").lower() in words.lower()
+    return title if says_it else f"{title} ({one.category})"
 
 
 def differences_text(parameters: Parameters, base: Parameters) -> str:

@@ -40,11 +40,13 @@ class Navigator(QObject):
         picked: layer and index of what a click met.
         box_edited: layer, lower and upper corner of a box whose handle was dropped.
         azimuth_changed: of the camera, in degrees.
+        moved: the camera, wherever it is now.
     """
 
     picked = Signal(str, int)
     box_edited = Signal(str, object, object)
     azimuth_changed = Signal(float)
+    moved = Signal(object)
 
     def __init__(self, canvas: Canvas, layers: Mapping[str, Layer], boxes: Mapping[str, CropBox]) -> None:
         super().__init__(canvas)
@@ -92,6 +94,12 @@ class Navigator(QObject):
     def _take_ease(self, share: float) -> None:
         if self._stays_fitted:
             self._ease_step(share)
+
+    def follow(self, camera: Camera) -> None:
+        """Look as another view does, which decides from now on what is in view."""
+        if camera != self.camera:
+            self._stays_fitted = False
+            self._move(camera)
 
     def fit_whatever_comes(self) -> None:
         """Bring into view all layers that are set from now on."""
@@ -229,6 +237,7 @@ class Navigator(QObject):
     def _move(self, camera: Camera) -> None:
         self.camera = camera
         self._canvas.set_camera(camera)
+        self.moved.emit(camera)
 
     def _size(self) -> Size:
         return max(self._canvas.width(), 1), max(self._canvas.height(), 1)

@@ -299,6 +299,11 @@ class Scene3D(QWidget):
         """Bring layers into view as a move that the eye can follow, unless the user has moved the view."""
         self._navigator.ease(names)
 
+    def link(self, other: Scene3D) -> None:
+        """Both look from the same place from now on, whichever of them is turned."""
+        for one, another in ((self, other), (other, self)):
+            one._navigator.moved.connect(another._navigator.follow)
+
     def grab_image(self) -> QImage:
         """The picture as it is now, without what lies over it."""
         return self._canvas.grab_image()

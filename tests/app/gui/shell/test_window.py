@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
 import psutil
 import pytest
-from PySide6.QtCore import QEvent, QObject, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, QUrl
+from PySide6.QtGui import QTextDocument
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog, QLabel, QMenu, QMessageBox, QPushButton, QWidget
 
 from app.gui.desk.memory import Memory
+from app.gui.desk.page_states import PageState
 from app.gui.pages.page import SplitView
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.pages.welcome.pictures import FOLDER, STEPS
 from app.gui.shell.frame import Chip, Tab
-from app.gui.shell.job_bar import MessageBar
+from app.gui.shell.guide import GUIDE_FILE, Guide
+from app.gui.shell.job_bar import MessageBar, next_step
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
 from app.gui.theme import DARK, LIGHT, THEMES, apply_theme, theme_of
@@ -187,7 +191,7 @@ def test_a_damaged_session_is_refused_in_a_sentence(window, tmp_path):
 def test_both_themes_reach_the_widgets(window, qapp):
     for theme in (DARK, LIGHT):
         apply_theme(qapp, theme)
-        assert theme_of(window.top_bar) is theme
+        assert theme_of(window.top_bar) is theme_of(window.top_bar.stop) is theme  # STOP is red in both
 
 
 def test_the_overview_lists_every_key_of_the_menus(window):
@@ -215,6 +219,30 @@ def test_whoever_cancels_a_job_sees_no_banner(window, mug_session, qtbot):
     assert window.messages.sentence == ""
     assert window.findChild(QLabel, "job_text").text() == "Imagine: cancelled; what was finished is kept."
     assert window.page("scan").height() == height
+
+
+@pytest.mark.parametrize("shown", WORK)
+@pytest.mark.parametrize("robot", ["empty", "stale", "failed", "fresh"])
+def test_next_leads_to_the_arm_until_the_candies_are_in_and_then_it_is_gone(shown, robot):
+    states = {page: PageState("fresh") for page in WORK} | {"robot": PageState(robot)}
+    step = next_step(states, True, shown)
+    if robot == "fresh":
+        assert step is None
+    else:
+        assert step is not None and step.page == ("robot" if shown in ("pours", "robot") else "pours")
+
+
+def test_after_an_entered_outcome_nothing_is_next_anywhere(window, mug_session):
+    window.desk.open_session(mug_session)
+    workspace = window.desk.workspace
+    run = SimpleNamespace(is_back_off=False, is_done=True, imagination=workspace.record("pouring").digest,
+                          outcome=SimpleNamespace(n_spilled=0))  # fmt: skip
+    workspace.runs = [run]
+    workspace.stages_changed.emit()
+    assert _tab(window, "robot").figure == "0 spilled"
+    for page in WORK:
+        window.show_page(page)
+        assert _button(window, "next").isHidden()
 
 
 def test_next_leads_to_another_page_or_is_not_there(window, mug_session, qtbot):
@@ -349,3 +377,21 @@ def test_an_arm_that_moves_is_said_to_move(window):
         assert chip.text == said
         window.desk.cell.changed.emit()
         assert chip.text == said, "shown again for another reason"
+
+
+def test_the_operators_guide_is_in_the_help_menu_with_all_its_pictures(window, qtbot):
+    menus = Menus(window)
+    help_menu = next(menu for menu in menus.findChildren(QMenu) if menu.title() == "&Help")
+    _action(help_menu, "&Operator").trigger()
+    guide = window.findChild(Guide)
+    assert guide.isVisible() and not guide.isModal()  # it can stay open beside the work
+    titles = [guide.headings.item(row).text() for row in range(guide.headings.count())]
+    assert titles[:2] == ["Before you begin", "1 Scan"] and "After a stop" in titles
+    qtbot.waitExposed(guide)
+    qtbot.waitUntil(lambda: guide.text.verticalScrollBar().maximum() > 0)
+    guide.headings.setCurrentRow(titles.index("History"))
+    qtbot.waitUntil(lambda: guide.text.cursorForPosition(QPoint(40, 14)).block().text() == "History")
+    for target in re.findall(r"!\[.*?\]\((.*?)\)", GUIDE_FILE.read_text(encoding="utf-8")):
+        picture = guide.text.loadResource(QTextDocument.ResourceType.ImageResource.value, QUrl(target))
+        assert 0 < picture.width() < guide.text.viewport().width()
+    guide.close()

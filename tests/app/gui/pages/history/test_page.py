@@ -140,6 +140,26 @@ def test_two_sessions_are_compared(library, make_page, qtbot):
     assert page._list.isVisible()
 
 
+def test_compared_models_are_seen_from_the_same_place_beside_their_pours(library, make_page, qtbot):
+    page = make_page()
+    page.compare(library / "mug", library / "block")
+    pictures = page._comparison.pictures
+    qtbot.waitUntil(lambda: all("object" in scene.layers() for scene in pictures.scenes))
+    left, right = pictures.scenes
+    right.look_from("top")
+    assert left._navigator.camera == right._navigator.camera  # one scale, one side
+    mug, block = pictures.maps
+    button(page, "comparison_pours").click()
+    assert mug.isVisible() and mug.shape == (8, 3)
+    assert block.isHidden()
+    assert said(page, "no_pours") == "No pours were imagined."
+    button(page, "compared_colors_inside").click()
+    assert not mug.shows_clean
+    button(page, "comparison_lines").click()
+    assert page.findChild(QTableWidget, "comparison_table").isVisible()
+    assert not pictures.isVisible()
+
+
 def test_a_session_is_compared_with_the_open_one(library, make_page, desk, qtbot):
     desk.workspace.open(library / "block")
     page = make_page()

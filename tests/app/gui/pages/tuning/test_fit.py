@@ -16,6 +16,7 @@ from core.evaluation.fitting.fitted import ROLLING, fitted_parameters
 from core.evaluation.fitting.provenance import read_provenance
 from core.evaluation.fitting.scores import CaseScore, FitScore
 from core.evaluation.fitting.search import FitStep, FitTrial
+from core.evaluation.verdicts import ObjectVerdict
 from core.mesh_file import write_ply
 from core.parameters import Parameters, apply_settings, flatten, load_preset
 from hardware.simulation.objects import builtin_object
@@ -96,6 +97,22 @@ def test_what_is_chosen_is_said(page):
     task = page._fit.side.task((), "default", Parameters())
     assert [one.name for one in task.fitted] == [FRICTION]
     assert (task.source, task.n_seeds, task.n_trials) == ("mesh", 1, 7)
+
+
+def test_the_time_of_a_fit_is_said_before_it_begins(page, monkeypatch):
+    monkeypatch.setattr("app.gui.pages.tuning.fit.usable_processors", lambda: 2)
+    assert text(page, "fit_time").startswith("'Run all' first")
+    board, one = page._board.with_set(Parameters())
+    for name in ("mug", "block"):
+        board = board.with_verdict(one.key, ObjectVerdict(name, "", 90, 45, seconds=6.0))
+    page._show(board)
+    choose(page, 40)
+    assert text(page, "fit_time").startswith("Takes about 4 min at most: 80 times 6.0 s, 2 at a time.")
+    page.findChild(QSpinBox, "fit_seeds").setValue(2)
+    assert text(page, "fit_time").startswith("Takes about 8 min at most: 160 times 6.0 s")
+    source = page.findChild(QComboBox, "fit_input")
+    source.setCurrentIndex(source.findData("scan"))
+    assert text(page, "fit_time").endswith("Scanning the objects once comes on top.")
 
 
 def test_objects_of_one_kind_cannot_be_fitted_to(page, folder):

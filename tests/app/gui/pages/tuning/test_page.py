@@ -6,8 +6,8 @@ import pytest
 from PySide6.QtWidgets import QLabel, QLineEdit, QPushButton
 
 from app.gui.pages import saved_presets
-from app.gui.pages.tuning.board_view import CELL_ROLE
 from app.gui.pages.tuning.page import TuningPage
+from app.gui.pages.tuning.score_cell import CELL_ROLE
 from app.library import places
 from app.operations.tuning_board import Board, csv_text, last_source, load_board
 from core.errors import InputError
@@ -230,3 +230,19 @@ def test_a_preset_is_saved_and_offered(desk, qtbot, folder):
     with qtbot.waitSignal(desk.message) as told:
         page._side.save_wanted.emit("paper")
     assert "choose another name" in told.args[0]
+
+
+def test_objects_have_pictures_and_names_that_people_use(desk, folder, qtbot):
+    (folder / "labels.csv").write_text(
+        "id,label,category\nmug,container,mug\nblock,non-container,wood block\n"
+    )
+    (folder / "meshes" / "block.ply").write_text("damaged")
+    page = shown(desk, qtbot, folder)
+    table = page._view.objects
+    mug, block = table._rows["mug"], table._rows["block"]
+    qtbot.waitUntil(lambda: not mug.icon(0).isNull())
+    picture = mug.icon(0).pixmap(56, 42).toImage()
+    assert len({picture.pixel(x, 21) for x in range(picture.width())}) > 5  # a shaded mug, no plain plate
+    assert block.icon(0).isNull()  # judging it will say why
+    assert (mug.text(0), block.text(0)) == ("Mug", "Block (wood block)")
+    assert block.toolTip(0).splitlines()[0] == "block"  # the id of the file of labels
