@@ -23,7 +23,7 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from app.gui.pages.tuning.words import differences_text, measure_meaning, measure_noun
+from app.gui.pages.tuning.fit_texts import differences_text, measure_meaning, measure_noun
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.fact_table import Column, FactTable, Row
 from app.gui.views.labels import heading, text_label
