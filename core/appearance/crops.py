@@ -66,6 +66,15 @@ def object_square(frame: RgbdFrame, intrinsics: Intrinsics, box: CropBox) -> Squ
     return square_around(np.quantile(columns[is_object], tails), np.quantile(rows[is_object], tails))
 
 
+def quarter_turns(T_base_camera: FloatArray) -> int:
+    """Return how many quarter turns (`numpy.rot90`) bring a view upright, as a photograph is taken.
+
+    The hand holds the camera at any angle, which says nothing of the object, but makes it harder to know.
+    """
+    right, down = T_base_camera[2, :2]  # where up is in the image
+    return round(float(np.arctan2(right, -down)) / (np.pi / 2)) % 4
+
+
 def cropped(color: ColorImage, square: Square) -> Crop:
     """Return a square of an image (H, W, 3) at the network's size: (96, 96, 3), from 0 to 1.
 

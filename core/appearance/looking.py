@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
-from core.appearance.crops import Square, cropped, object_square
+from core.appearance.crops import Square, cropped, object_square, quarter_turns
 from core.appearance.network import Look, Network
 from core.geometry import BoolArray
 from core.scan.model import ColorImage, CropBox, Intrinsics, RgbdFrame, Scan
@@ -73,10 +73,15 @@ class ViewLook:
 def look_at_view(network: Network, frame: RgbdFrame, intrinsics: Intrinsics, box: CropBox) -> ViewLook | None:
     """Look at the object in a view; none if the view does not show it.
 
-    The paper's authors cropped it by hand; here what was measured within its box tells where it is.
+    The paper's authors cropped it by hand; here what was measured within its box tells where it is. The
+    network sees it upright; its map is turned back to the image.
     """
     square = object_square(frame, intrinsics, box)
-    return None if square is None else ViewLook(square, network.look(cropped(frame.color, square)))
+    if square is None:
+        return None
+    turns = quarter_turns(frame.T_base_camera)
+    upright = network.look(np.rot90(cropped(frame.color, square), turns))
+    return ViewLook(square, replace(upright, contain=np.rot90(upright.contain, -turns)))
 
 
 def look_at_scan(network: Network, scan: Scan, box: CropBox) -> tuple[ViewLook | None, ...]:

@@ -18,6 +18,7 @@ import numpy.typing as npt
 
 from core.appearance.crops import SIZE_PX, Crop
 from core.errors import InputError
+from core.files import read_json
 from core.resources import RESOURCES
 
 CHANNELS = (16, 24, 32, 48)
@@ -28,6 +29,7 @@ HIDDEN = 32
 MAP_CELLS = SIZE_PX // 2
 """Side of the contain map."""
 WEIGHTS_FILE = RESOURCES / "appearance" / "weights.npz"
+PROVENANCE_FILE = WEIGHTS_FILE.with_name("provenance.json")
 
 _Array = npt.NDArray[np.float32]
 
@@ -147,6 +149,15 @@ def shipped_network() -> Network:
         InputError: its weights cannot be used.
     """
     return Network.load()
+
+
+def held_out_accuracy() -> float:
+    """Return the share of views of objects held out of its families that the shipped network judges rightly.
+
+    Raises:
+        SessionError: what its training wrote down cannot be read.
+    """
+    return float(read_json(PROVENANCE_FILE)["held_out"]["held_out_accuracy"])
 
 
 def weights_digest(path: Path = WEIGHTS_FILE) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from core.appearance.crops import SIZE_PX, Square, square_around
+from core.appearance.crops import SIZE_PX, Square, quarter_turns, square_around
 from core.evaluation.labels import read_labels
 from core.geometry import FloatArray, invert_pose, make_pose, transform_points
 from core.mesh import TriangleMesh
@@ -22,7 +22,7 @@ from hardware.scanning.simulated import simulated_cell
 from hardware.simulation.depth_camera import CARMINE_INTRINSICS
 from hardware.simulation.families.catalogue import families_of, members
 from hardware.simulation.placing import place_on_platform, transform_mesh
-from hardware.simulation.world import World
+from hardware.simulation.world import Hits, World
 from training.appearance.labels import Hollow
 from training.appearance.scenes import painted, with_faults
 
@@ -55,9 +55,17 @@ class Subject:
 
 @dataclass(frozen=True)
 class Example:
-    """One view: (96, 96, 3) colour, (48, 48) share of each cell that contains, both of 255."""
+    """One view, upright, all of 255.
+
+    Attributes:
+        color: (96, 96, 3).
+        nearness: (96, 96): how much nearer than the object's middle it is, in sides of the crop; 0 is a side
+            farther or nothing, 255 a side nearer. For the variant that sees depth.
+        contain: (48, 48) share of each cell that contains.
+    """
 
     color: npt.NDArray[np.uint8]
+    nearness: npt.NDArray[np.uint8]
     contain: npt.NDArray[np.uint8]
 
 
@@ -116,7 +124,8 @@ def _example(
     table_m: FloatArray,
     random: np.random.Generator,
 ) -> Example:
-    rays = _rays(_drawn_square(mesh, T_base_camera, random))
+    square = _drawn_square(mesh, T_base_camera, random)
+    rays = _rays(square)
     directions = rays @ T_base_camera[:3, :3].T
     eye_m = T_base_camera[:3, 3]
     hits = world.cast(eye_m, directions)
@@ -127,7 +136,21 @@ def _example(
     if hollow is not None:
         contain[hits.on_object] = hollow.contains(hits.points_m[hits.on_object], eye_m)
     cells = _pooled(contain, len(contain) // MAP_PX)
-    return Example(np.rint(255 * image).astype(np.uint8), np.rint(255 * cells).astype(np.uint8))
+    nearness = _nearness(hits, square)[::_FINER, ::_FINER]
+    turns = quarter_turns(T_base_camera)
+    color, near, contains = (
+        np.ascontiguousarray(np.rot90(np.rint(255 * one), turns)).astype(np.uint8)
+        for one in (image, nearness, cells)
+    )
+    return Example(color, near, contains)
+
+
+def _nearness(hits: Hits, square: Square) -> FloatArray:
+    """Return (192, 192) from 0 to 1; distances along rays of z = 1 are depths."""
+    middle_m = float(np.median(hits.distance[hits.on_object])) if hits.on_object.any() else 1.0
+    side_m = square.side_px / CARMINE_INTRINSICS.fx * middle_m
+    near: FloatArray = (0.5 + (middle_m - hits.distance) / (2 * side_m)).clip(0, 1)
+    return near
 
 
 def _drawn_square(mesh: TriangleMesh, T_base_camera: FloatArray, random: np.random.Generator) -> Square:

@@ -11,15 +11,21 @@ from core.appearance.network import CHANNELS, GROUP_CHANNELS, LAYERS, NORM_EPSIL
 Weights = dict[str, jax.Array]
 
 
-def initial_weights(seed: int) -> Weights:
-    """Draw weights after He et al. 2015; norms begin as 1 and 0, the last layers as 0."""
+def initial_weights(seed: int, n_inputs: int = 3) -> Weights:
+    """Draw weights after He et al. 2015; norms begin as 1 and 0, the last layers small.
+
+    Args:
+        seed: of the drawing.
+        n_inputs: channels of the images: 3 colours, and a fourth for the variant that sees depth.
+    """
     random = np.random.default_rng(seed)
     weights: dict[str, np.ndarray] = {}
-    for name, shape in LAYERS.items():
+    first = LAYERS["down0"]
+    for name, shape in (LAYERS | {"down0": (*first[:2], n_inputs, first[3])}).items():
         fan_in = int(np.prod(shape[:-1]))
         is_last = name in ("map", "score")
-        drawn = random.normal(0, np.sqrt(2 / fan_in), shape)
-        weights[f"{name}.kernel"] = np.zeros(shape) if is_last else drawn
+        size = 0.1 if is_last else 1.0
+        weights[f"{name}.kernel"] = size * random.normal(0, np.sqrt(2 / fan_in), shape)
         weights[f"{name}.shift"] = np.zeros(shape[-1])
         if name not in ("map", "score", "hidden"):
             weights[f"{name}.scale"] = np.ones(shape[-1])
@@ -27,7 +33,7 @@ def initial_weights(seed: int) -> Weights:
 
 
 def forward(weights: Weights, images: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Return the logits of map (N, 48, 48) and score (N,) of images (N, 96, 96, 3), from 0 to 1."""
+    """Return the logits of map (N, 48, 48) and score (N,) of images (N, 96, 96, 3 or 4), from 0 to 1."""
     x = images - 0.5
     skips = []
     for level in range(len(CHANNELS)):

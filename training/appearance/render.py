@@ -15,13 +15,13 @@ import numpy as np
 from core.errors import InputError
 from training.appearance.examples import Subject, development_objects, examples_of, family_subjects
 
-_VIEWS_OF_MEMBER = 10
+_VIEWS_OF_MEMBER = 8
 _VIEWS_OF_OBJECT = 40
 """Of each development object: there are few of them."""
 
 
 def render(out: Path, objects: Path, n_members: int, seed: int) -> None:
-    """Render all subjects and write `color` (N, 96, 96, 3), `contain` (N, 48, 48) and what each row is of."""
+    """Render all subjects and write the arrays of `Example`, stacked, and what each row is of."""
     subjects: Iterator[tuple[Subject, int]] = chain(
         ((one, _VIEWS_OF_MEMBER) for one in family_subjects(n_members, seed)),
         ((one, _VIEWS_OF_OBJECT) for one in development_objects(objects)),
@@ -36,6 +36,7 @@ def render(out: Path, objects: Path, n_members: int, seed: int) -> None:
     np.savez(
         out,
         color=np.array([one.color for _, one in rows]),
+        nearness=np.array([one.nearness for _, one in rows]),
         contain=np.array([one.contain for _, one in rows]),
         name=np.array([subject.name for subject, _ in rows]),
         kind=np.array([subject.kind for subject, _ in rows]),
@@ -54,7 +55,7 @@ def main() -> None:
     )
     parser.add_argument("out", type=Path)
     parser.add_argument("--objects", type=Path, default=Path("../shared/data/objects"))
-    parser.add_argument("--members", type=int, default=900)
+    parser.add_argument("--members", type=int, default=1300)
     parser.add_argument("--seed", type=int, default=23)
     given = parser.parse_args()
     render(given.out, given.objects, given.members, given.seed)

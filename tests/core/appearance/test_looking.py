@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.appearance.crops import MARGIN, SIZE_PX, Square, cropped, object_square
-from core.appearance.looking import ViewLook, look_at_scan, top_down_view
-from core.appearance.network import Look
-from core.geometry import look_at
-from core.scan.model import Scan
+from core.appearance.crops import MARGIN, SIZE_PX, Square, cropped, object_square, quarter_turns
+from core.appearance.looking import ViewLook, look_at_scan, look_at_view, top_down_view
+from core.appearance.network import Look, Network
+from core.geometry import look_at, make_pose, rotation_z
+from core.scan.model import CropBox, Scan
 from tests.core.appearance.looks import BOX, INTRINSICS, block_frame, drawn_network
 
 
@@ -56,6 +56,39 @@ def test_the_overlay_is_green_where_it_contains_and_nothing_else_changes():
     assert (drawn[:390, :570] == 100).all(), "outside the square"
     assert drawn[445, 639, 1] > drawn[445, 639, 0]
     assert (color == 100).all()
+
+
+@pytest.mark.parametrize("degrees", [-170, -90, -40, 0, 40, 90, 180])
+def test_a_view_is_turned_so_that_up_is_up(degrees):
+    """The camera looks at a pole's top, above the middle, while it is turned about its own axis."""
+    roll = make_pose(rotation_z(np.deg2rad(degrees)), np.zeros(3))
+    T_base_camera = look_at([0.6, 0.2, 0.3], [0, 0, 0]) @ roll
+    x, y, z = (np.linalg.inv(T_base_camera) @ [0, 0, 0.1, 1])[:3]
+    image = np.zeros((101, 101))
+    image[round(50 + 200 * y / z), round(50 + 200 * x / z)] = 1
+    row, column = np.argwhere(np.rot90(image, quarter_turns(T_base_camera)))[0] - 50
+    assert row < 0 and abs(column) <= abs(row) + 1
+
+
+class _Brightness(Network):
+    """Where it is bright, something contains; only an upright view is bright in its upper half."""
+
+    def look(self, crop: np.ndarray) -> Look:
+        shown = crop[::2, ::2].mean(axis=-1)
+        return Look(float(shown[:24].mean() - shown[24:].mean()), shown)
+
+
+def test_the_network_sees_a_view_upright_and_its_map_lies_over_the_image_as_it_was():
+    frame = block_frame(300, 200, 80, 80)
+    frame.color[200:240, 300:380] = 60  # the lower half of the block is bright
+    camera = look_at([0.3, 0, 0.5], [0, 0, 0.05])
+    upside_down = camera @ make_pose(rotation_z(np.pi), np.zeros(3))
+    box = CropBox((-2, -2, -2), (2, 2, 2))
+    for pose, sign in ((camera, -1), (upside_down, 1)):
+        look = look_at_view(_Brightness({}), replace(frame, T_base_camera=pose), INTRINSICS, box)
+        assert np.sign(look.look.score) == sign
+        contains = look.contain_map(frame.depth_m.shape) > 0.5
+        assert contains[258, 340] and not contains[218, 340]
 
 
 def test_each_view_is_looked_at_and_the_steepest_one_is_from_above():

@@ -87,6 +87,16 @@ def test_the_same_seed_renders_the_same_views():
     assert not next(examples_of(other, 1, 5)).contain.any(), "what is no container contains nowhere"
 
 
+def test_views_are_upright_and_nearness_tells_the_object_from_what_is_behind_it():
+    """A box seen from aside: what is above it in the image is behind it."""
+    subject = Subject("block", "block", builtin_object("block"), False, False)
+    for one in examples_of(subject, 6, 2):
+        assert one.nearness.shape == (96, 96)
+        middle = one.nearness[40:56, 40:56].astype(float)
+        assert 90 < np.median(middle) < 165, "about the object's middle"
+        assert one.nearness[:4].mean() < one.nearness[-4:].mean() + 12, "what is above is farther: upright"
+
+
 def test_only_the_development_half_is_learnt_from_and_an_eighth_of_each_family_is_held_out():
     known = list(family_subjects(18 * 8, 0))
     assert {FAMILIES[one.kind].half for one in known} == {"development"}

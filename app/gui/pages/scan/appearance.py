@@ -15,6 +15,7 @@ from app.gui.pages.scan.loading import COLOR_ENDING, POSE_ENDING, Picture
 from app.gui.remedies import worded
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import say, text_label
+from core.appearance.network import held_out_accuracy
 from core.errors import PoursightError
 
 if TYPE_CHECKING:
@@ -94,8 +95,9 @@ class AppearanceRow(QWidget):
         self._switch.setToolTip(
             self.tr(
                 "What a network that sees colours alone takes for a hollow, in green. For comparison only: "
-                "it is right about three views of four, and nothing goes by it."
-            )
+                "of views of objects like those it learnt from it judges {share:.0f} % rightly, and nothing "
+                "goes by it."
+            ).format(share=100 * held_out_accuracy())
         )
         self._said = text_label("appearance_said", "muted")
         column = QVBoxLayout(self)

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QFormLayout, QGridLayout, QL
 from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
 from app.gui.pages.page import SidePanel
+from app.gui.pages.tuning.fit_texts import fitted_tip, fitted_title, measure_noun, range_text, signed
 from app.gui.pages.tuning.fit_view import FitView
-from app.gui.pages.tuning.words import fitted_tip, fitted_title, measure_noun, range_text, signed
 from app.gui.remedies import worded
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import heading, say, text_label

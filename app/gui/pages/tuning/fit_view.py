@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QFont
 from PySide6.QtWidgets import QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
 
-from app.gui.pages.tuning.words import (
+from app.gui.pages.tuning.fit_texts import (
     fitted_title,
     measure_noun,
     score_sentence,

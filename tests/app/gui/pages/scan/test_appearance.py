@@ -1,5 +1,6 @@
 """The overlay of looks on the Scan page's colour image."""
 
+import csv
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from PySide6.QtWidgets import QCheckBox, QLabel
 
 from app.gui.pages.scan.appearance import AppearanceRow, ShownLook, load_look
 from app.gui.pages.scan.loading import Picture
+from core.appearance.network import WEIGHTS_FILE
 from core.scan.view_files import read_color
 
 
@@ -24,6 +26,13 @@ def shown(qtbot, desk, make_page, few_views, mug_session):
 def test_the_overlay_is_off_until_somebody_wants_it(shown):
     _, switch, said = shown
     assert not switch.isChecked() and not said.isVisible()
+
+
+def test_it_says_how_good_the_shipped_network_is(shown):
+    _, switch, _ = shown
+    with (WEIGHTS_FILE.parent / "curves.csv").open(newline="") as file:
+        last = list(csv.DictReader(file))[-1]
+    assert f"judges {100 * float(last['held_out_accuracy']):.0f} % rightly" in switch.toolTip()
 
 
 def test_it_shows_what_contains_and_the_score_and_goes_away_again(qtbot, desk, shown):

@@ -6,8 +6,8 @@ import pytest
 from PySide6.QtWidgets import QCheckBox, QComboBox, QLabel, QLineEdit, QPushButton, QSpinBox
 
 from app.gui.pages import saved_presets
+from app.gui.pages.tuning.fit_texts import fitted_title, range_text, score_sentence, value_text
 from app.gui.pages.tuning.page import TuningPage
-from app.gui.pages.tuning.words import fitted_title, range_text, score_sentence, value_text
 from app.jobs.messages import Failed, FailureKind
 from app.jobs.tuning_work import FitStepped, FitTask
 from app.library import places

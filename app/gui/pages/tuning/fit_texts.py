@@ -1,4 +1,4 @@
-"""What judges, and how parameters and fits are written for people."""
+"""How a fit is written for people: its measure, its parameters with their ranges, its steps and its score."""
 
 from __future__ import annotations
 
