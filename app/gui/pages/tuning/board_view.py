@@ -17,9 +17,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gui.pages.tuning.fit_texts import differences_text, measure_meaning, measure_noun, object_title
 from app.gui.pages.tuning.object_pictures import PICTURE_PX
 from app.gui.pages.tuning.score_cell import CELL_ROLE, ScoreCell, ScoreDelegate
-from app.gui.pages.tuning.fit_texts import differences_text, measure_meaning, measure_noun, object_title
 from app.gui.theme import GRID_PX
 from app.gui.views.fact_table import Column, FactTable, Row
 from app.gui.views.labels import heading, text_label
