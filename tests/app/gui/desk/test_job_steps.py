@@ -89,4 +89,7 @@ def test_what_is_stale_are_the_steps(qapp, mug_session, tmp_path):
     assert workspace.steps_to(*IMAGINING) == ("colors",)
     (mug_session / "judgement" / "record.json").unlink()
     workspace.refresh()
-    assert workspace.steps_to("risk")[:3] == ("capacity", "retention", "pouring")
+    assert workspace.steps_to("risk") == ("capacity", "pouring", "risk"), "neither waits for the tilting"
+    (mug_session / "retention" / "record.json").unlink()
+    workspace.refresh()
+    assert workspace.steps_to(*IMAGINING)[-1] == "retention"
