@@ -37,15 +37,44 @@ class StateLog(Protocol):
         ...
 
 
-class WatchedArm:
-    """Follows one motion after the other; any fault raises, and `stop` brings the arm to rest then."""
+class SlownessTold:
+    """Says what makes an arm slow, each thing once until it is over."""
 
-    def __init__(self, robot: Robot, log: StateLog, reporter: Reporter) -> None:
-        """Drive a connected arm; `log` keeps its states, `reporter` knows whether somebody cancels."""
+    def __init__(self, reporter: Reporter) -> None:
+        self._reporter = reporter
+        self._slowed_by = ""
+
+    def tell(self, state: RobotState) -> None:
+        """Say it if it is new."""
+        slow = slowness(state)
+        kind = slow.partition(" at ")[0]
+        if slow and kind != self._slowed_by:
+            self._reporter.warn(slow)
+        self._slowed_by = kind
+
+
+class WatchedArm:
+    """Follows one motion after the other; any fault raises, and `stop` brings the arm to rest then.
+
+    Attributes:
+        slowness: what was said of what makes it slow.
+    """
+
+    def __init__(
+        self, robot: Robot, log: StateLog, reporter: Reporter, slowness: SlownessTold | None = None
+    ) -> None:
+        """Drive a connected arm.
+
+        Args:
+            robot: the arm.
+            log: keeps its states.
+            reporter: knows whether somebody cancels.
+            slowness: see above; none: nothing was said yet.
+        """
+        self.slowness = slowness or SlownessTold(reporter)
         self._robot = robot
         self._log = log
         self._reporter = reporter
-        self._slowed_by = ""
 
     def ready_state(self) -> RobotState:
         """Return the newest state of an arm that may be commanded.
@@ -84,7 +113,7 @@ class WatchedArm:
                 "The arm is not at rest where the plan starts (a joint is "
                 f"{np.degrees(apart_rad):.1f} degrees off); plan again."
             )
-        self._warn_if_slower(state)
+        self.slowness.tell(state)
 
     def follow(
         self,
@@ -139,21 +168,13 @@ class WatchedArm:
             self._reporter.raise_if_cancelled()
             state = self.ready_state()
             self._log.state(name, state)
-            self._warn_if_slower(state)
+            self.slowness.tell(state)
             look(state)
             if time.monotonic() > deadline_s:
                 raise RobotError(
                     f"The arm did not finish '{label}' in time and was stopped; find out what holds it."
                 )
             time.sleep(_POLL_S)
-
-    def _warn_if_slower(self, state: RobotState) -> None:
-        """Say what makes the arm slow, each thing once until it is over."""
-        slow = slowness(state)
-        kind = slow.partition(" at ")[0]
-        if slow and kind != self._slowed_by:
-            self._reporter.warn(slow)
-        self._slowed_by = kind
 
     def _wait_for_rest(self) -> RobotState:
         deadline_s = time.monotonic() + REST_WITHIN_S
@@ -166,7 +187,7 @@ class WatchedArm:
 
 
 def refuse_restricted(
-    robot: Robot, motions: Iterable[tuple[JointTrajectory, str]], reporter: Reporter
+    robot: Robot, motions: Iterable[tuple[JointTrajectory, str]], slowness: SlownessTold
 ) -> None:
     """Refuse motions, each with its label, that what is set on the arm's controller does not allow.
 
@@ -182,8 +203,7 @@ def refuse_restricted(
         )
     for trajectory, label in motions:
         robot.refuse_unsafe(trajectory, label)
-    if slow := slowness(state):
-        reporter.warn(slow)
+    slowness.tell(state)
 
 
 _FULL_SPEED, _STILL = 0.99, 0.005

@@ -26,7 +26,7 @@ from core.session import explained
 from core.session.pour_runs import next_run_folder, pour_runs, unfinished_run
 from core.session.swapping import flush
 from hardware.cell import Arm
-from hardware.driving import SAME_PLACE_RAD, WatchedArm, refuse_restricted
+from hardware.driving import SAME_PLACE_RAD, SlownessTold, WatchedArm, refuse_restricted
 from hardware.errors import DeviceError, ObjectLost, OutputChanged, RobotError, RobotStopped, TrackingLost
 from hardware.interfaces import Robot, RobotState
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
@@ -79,6 +79,7 @@ class Pouring:
         self._session = session
         self._reporter = reporter
         self._confirm_move = confirm_move
+        self._slowness = SlownessTold(reporter)
         self._interrupted: tuple[PourPlan, tuple[PlannedMove, ...], int] | None = None
 
     @property
@@ -125,7 +126,7 @@ class Pouring:
                 "then plan again."
             )
         plan = plan_pour(self._cell, self._target, self._arm.robot.state().joints_rad)
-        refuse_restricted(self._arm.robot, _forwards(plan), self._reporter)
+        refuse_restricted(self._arm.robot, _forwards(plan), self._slowness)
         return FreshPlan(plan, self._target, time.monotonic())
 
     def carry_out(self, fresh: FreshPlan) -> Path:
@@ -228,8 +229,9 @@ class Pouring:
 
     def _make(self, plan: PourPlan, moves: tuple[PlannedMove, ...], log: RunLog) -> None:
         margins = plan_margins(self._cell, self._target, plan)
+        watched = WatchedArm(self._arm.robot, log, self._reporter, self._slowness)
         procedure = PourProcedure(
-            self._arm, moves, log, self._reporter, margins, self._cell, self._confirm_move
+            self._arm, moves, log, self._reporter, margins, self._cell, watched, self._confirm_move
         )
         try:
             procedure.run()
@@ -290,6 +292,7 @@ class PourProcedure:
         reporter: Reporter,
         margins: Mapping[Segment, MoveMargin],
         cell: PourCell,
+        watched: WatchedArm,
         confirm_move: ConfirmMove,
     ) -> None:
         """`margins` are those of the plan that the moves belong to, which was made for `cell`."""
@@ -299,7 +302,7 @@ class PourProcedure:
         self._T_flange_tool = cell.T_flange_grasp
         self._max_force_n = cell.limits.max_force_n
         self._arm = arm
-        self._watched = WatchedArm(arm.robot, log, reporter)
+        self._watched = watched
         self._moves = tuple(moves)
         self._log = log
         self._reporter = reporter

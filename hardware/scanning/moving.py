@@ -74,7 +74,6 @@ class WatchedMoving:
         self.was_stopped = False
         self._cell = cell
         self._log = log
-        self._reporter = reporter
         self._confirm = confirm
         self._watched = WatchedArm(cell.robot, log, reporter)
         self._legs: dict[str, Leg] = {}
@@ -86,7 +85,7 @@ class WatchedMoving:
         self._refuse_full_hand()
         route = plan_route(self._cell, self._watched.ready_state().joints_rad, views)
         legs = [(leg.trajectory, f"to {leg.view.name}") for leg in route.legs if leg.trajectory is not None]
-        refuse_restricted(self._cell.robot, legs, self._reporter)
+        refuse_restricted(self._cell.robot, legs, self._watched.slowness)
         self._log.event("planned", route.sentence, views=[leg.view.name for leg in route.legs])
         self.was_stopped = False
         if route.n_views:
