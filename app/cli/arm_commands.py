@@ -23,6 +23,7 @@ from core.motion.pour.planning import plan_pour
 from core.session import Session, explained
 from core.session.operator_choice import withdraw_operator_choice
 from core.session.pour_runs import note_emptied
+from hardware.grippers.robotiq_line import ROBOTIQ_PORT
 from hardware.simulation.ur_controller.identity import CONTROL_PORT, identity
 from hardware.simulation.ur_controller.server import ControllerServer, ControllerSettings
 
@@ -99,7 +100,9 @@ def clear_cache() -> None:
         kept.empty()
 
 
-def serve_controller(address: str, model: str, version: str, speed_up: float, faults: Sequence[str]) -> None:
+def serve_controller(
+    address: str, model: str, version: str, speed_up: float, faults: Sequence[str], robotiq: str | None
+) -> None:
     """Serve as a simulated UR controller until Ctrl-C or SIGTERM.
 
     Raises:
@@ -107,12 +110,16 @@ def serve_controller(address: str, model: str, version: str, speed_up: float, fa
     """
     # What is refused is quoted: of a word that is no name at all the beginning will do.
     model, version, address, *faults = map(excerpt, (model, version, address, *faults))
-    request = ControllerSettings(identity(model, version), address, speed_up=speed_up, faults=faults)
+    request = ControllerSettings(
+        identity(model, version), address, speed_up=speed_up, faults=faults, robotiq=robotiq
+    )
+
+    beside = "" if robotiq is None else f" A Robotiq {robotiq} answers at port {ROBOTIQ_PORT}."
 
     def listens(at: str) -> None:
         print(
             f"Simulated {model} with PolyScope {version} listens at {at}; faults and questions: port "
-            f"{CONTROL_PORT}. Ctrl-C ends it.",
+            f"{CONTROL_PORT}.{beside} Ctrl-C ends it.",
             flush=True,
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -361,11 +361,15 @@ def ur_controller(
             parser=given_word,
         ),
     ] = None,
+    robotiq: Annotated[
+        Literal["2F-85", "2F-140", "Hand-E"] | None,
+        typer.Option("--robotiq", help="Serve a Robotiq gripper beside it."),
+    ] = None,
 ) -> None:
     """Run a simulated UR controller, which ur_rtde cannot tell from a real one, until Ctrl-C."""
     from app.cli import arm_commands
 
-    arm_commands.serve_controller(address, model, version, speed_up, fault or [])
+    arm_commands.serve_controller(address, model, version, speed_up, fault or [], robotiq)
 
 
 def main() -> None:

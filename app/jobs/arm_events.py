@@ -53,12 +53,14 @@ class ArmStatus(Status):
         is_gripper_closed: as read back; none if that is not known.
         problem: a sentence, if it cannot be used as it is; empty if it can.
         must_back_off: whether a run was stopped midway, so that the arm has to back off first.
+        is_holding: whether the gripper holds something; none where it does not report that.
     """
 
     state: RobotState | None
     is_gripper_closed: bool | None
     problem: str
     must_back_off: bool = False
+    is_holding: bool | None = None
 
 
 @dataclass(frozen=True)

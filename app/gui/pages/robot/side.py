@@ -181,12 +181,14 @@ def _state_facts(status: ArmStatus, has_stop_channel: bool) -> list[Fact]:
         mode, safety = state.robot_mode.words, state.safety_mode.words
         speed = tr("{percent:.0f} %").format(percent=100 * state.speed_scaling)
     grip = {None: "--", True: tr("closed"), False: tr("open")}[status.is_gripper_closed]
+    if status.is_gripper_closed and status.is_holding is not None:
+        grip = tr("holds something") if status.is_holding else tr("closed, empty")
     stop = tr("connected") if has_stop_channel else tr("via the arm's process")
     return [
         Fact(tr("Arm"), mode, tr("The controller's robot mode; 'running': power on, brakes released")),
         Fact(tr("Safety"), safety, tr("The controller's safety mode")),
         Fact(tr("Speed"), speed, tr("The factor for all speeds, set on the teach pendant's speed slider")),
-        Fact(tr("Gripper"), grip, tr("As read back from the tool's output")),
+        Fact(tr("Gripper"), grip, tr("As read back from the gripper, or from the tool's output")),
         Fact(
             tr("Stop channel"),
             stop,

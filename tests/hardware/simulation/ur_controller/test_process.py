@@ -18,6 +18,7 @@ import pytest
 
 from core.errors import PoursightError
 from hardware.errors import RobotError
+from hardware.grippers.robotiq_line import Contact, RobotiqAddress, RobotiqLine
 from hardware.simulation.ur_controller.identity import (
     CONTROL_PORT,
     DASHBOARD_PORT,
@@ -238,6 +239,21 @@ def test_the_command_line_serves_until_it_is_told_to_end(how: signal.Signals) ->
     process.send_signal(how)
     _, complaints = process.communicate(timeout=HANG_S)
     assert process.returncode == 0 and complaints == b""
+
+
+def test_the_command_line_serves_a_gripper_beside_the_arm() -> None:
+    address = f"127.78.{os.getpid() % 250 + 1}.9"
+    process = subprocess.Popen(
+        [sys.executable, "-m", "app.cli", "ur-controller", "--address", address, "--robotiq", "2F-140"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT,
+    )  # fmt: skip
+    assert process.stdout is not None
+    assert "Robotiq 2F-140 answers at port 63352" in process.stdout.readline().decode()
+    with RobotiqLine(RobotiqAddress(address)) as line:
+        assert line.get("OBJ") in set(Contact)
+    process.terminate()
+    process.communicate(timeout=HANG_S)
+    assert process.returncode == 0
 
 
 def test_the_command_line_explains_what_cannot_be() -> None:
