@@ -139,7 +139,7 @@ window-kills: setup
 	.venv/bin/python -m tests.benchmarks.window_kills
 
 screenshots: setup-test
-	$(SCREEN) .venv/bin/python -m tests.screenshots docs/screenshots
+	$(SCREEN) .venv/bin/python -m tests.screenshots build/screenshots
 
 film: setup-test
 	env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1280x800x24" .venv/bin/python -m tests.film docs/pictures

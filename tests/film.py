@@ -1,6 +1,6 @@
 """A film of the tour: the mug scanned, imagined, and poured into, in a real window on a virtual screen.
 
-Run by `make film`. Waiting is cut where nothing changes on the screen, and the rest is played faster, so that
+Run by `make film`. Waiting is cut where nothing but the job bar changes, the rest is played faster, so that
 the film is a minute long at most; a ring shows what is clicked.
 """
 
@@ -24,9 +24,11 @@ from app.library.places import SESSIONS_VARIABLE
 
 SIZE_PX = (1280, 800)
 LONGEST_S = 58.0
-_RATE_HZ, _MOST_EQUAL = 8, 10
-_LOOK_S, _RING_S, _RING_PX = 1.2, 0.8, 22
-_POSTER_SHARE = 0.62
+_RATE_HZ, _MOST_EQUAL, _EVERY_EQUAL = 8, 8, 24
+_BAR_PX = 44
+"""The job bar: where only its time left changes, the film hurries on."""
+_LOOK_S, _SEE_S, _RING_S, _RING_PX = 1.2, 4.0, 0.8, 22
+_POSTER_SHARE = 0.75
 
 
 class FilmedWalk(Walk):
@@ -49,6 +51,11 @@ class FilmedWalk(Walk):
         self.wait(lambda: self.shown(QWidget, name), f"button '{name}'", 10)
         self._look_at(name)
         super().hold(name, seconds)
+
+    def wait_for_work(self, what: str, within_s: float) -> None:
+        """Wait for a job, and see what came of it."""
+        super().wait_for_work(what, within_s)
+        let_work(_SEE_S)
 
     def _look_at(self, name: str) -> None:
         let_work(_LOOK_S)

@@ -1,11 +1,14 @@
 """Pictures of every page, light and dark, small and large, with a container and with something that is none.
 
 Run by `make screenshots`: the sessions are made by the real pipeline, in a real window on a virtual screen.
+All are kept in the folder given; `docs/screenshots` gets those that the documents show, and holds no others.
 """
 
 from __future__ import annotations
 
 import os
+import re
+import shutil
 import sys
 import tempfile
 from pathlib import Path
@@ -16,6 +19,7 @@ from PySide6.QtWidgets import QComboBox, QPushButton, QSpinBox, QWidget
 
 from app.gui.headless_check import Walk, let_work
 from app.gui.main import make_application, open_window
+from app.gui.pages.history.page import HistoryPage
 from app.gui.pages.page import PRIMARY
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.pages.tuning.page import TuningPage
@@ -36,6 +40,7 @@ from core.calibration.board import BoardSpec
 from core.mesh_file import write_mesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
+from core.resources import RESOURCES
 from hardware.cell import read_cell
 from hardware.simulation.objects import builtin_object
 from tests.app.sessions import make_poured_session, make_session
@@ -66,6 +71,8 @@ _STEP_BOXES = {
 }
 """Of the 3D view on each page, in the smaller window's pixels."""
 _SETTLING_S = 1.2
+_ROOT = RESOURCES.parent
+_SHOWN = re.compile(r"screenshots/([\w-]+\.png)")
 
 
 def main() -> None:
@@ -87,6 +94,19 @@ def main() -> None:
             for size in SIZES:
                 _picture(target, library, theme, size)
             _crop_steps(target, theme)
+    keep_what_is_shown(target)
+
+
+def keep_what_is_shown(made: Path) -> None:
+    """Copy the pictures that the documents show; a repository need not carry the others."""
+    documents = (_ROOT / "README.md", *(_ROOT / "docs").glob("*.md"))
+    names = {name for one in documents for name in _SHOWN.findall(one.read_text(encoding="utf-8"))}
+    folder = _ROOT / "docs" / "screenshots"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    for name in sorted(names):
+        shutil.copy(made / name, folder / name)
+    print(f"{len(names)} pictures, {sum(one.stat().st_size for one in folder.iterdir()) / 1e6:.1f} MB")
 
 
 def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> None:
@@ -111,6 +131,8 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
             if key == "robot" and window.desk.workspace.is_container:
                 _plan(walk)
             _keep(walk, target / f"{name}-{key}-{theme}-{size[0]}.png")
+            if key == "history":
+                _compare(walk, library, target / f"{name}-comparison-{theme}-{size[0]}.png")
         window.desk.workspace.close()
     window.close_without_asking()
 
@@ -197,6 +219,18 @@ def _fit(walk: Walk, path: Path) -> None:
     walk.wait_for_work("the fit", 240)
     _keep(walk, path)
     walk.click("fit_back")
+
+
+def _compare(walk: Walk, library: Path, path: Path) -> None:
+    """The two sessions beside each other."""
+    if path.name.startswith("block"):
+        return  # the same two
+    page = walk.window.page("history")
+    assert isinstance(page, HistoryPage)
+    page.compare(*(library / name for name in OBJECTS))
+    walk.wait(lambda: walk.window.desk.background.is_idle, "the sessions are compared", 60)
+    _keep(walk, path)
+    page.press_primary()
 
 
 def _keep(walk: Walk, path: Path) -> None:

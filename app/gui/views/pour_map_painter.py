@@ -21,7 +21,7 @@ LEGEND_PX = 88
 _FULL_ARC = 0.25
 """Spread at which the arc is as wide as its cell."""
 _LEGEND_STAR_PX = 6.0
-_LEAST_POINTS = 7.5
+_LEAST_POINTS, _BESIDE_PX = 7.0, 3.0
 _SMALL_POINTS = 10.0
 """Font size up to which the star is small, too."""
 
@@ -49,7 +49,19 @@ class PourMapPainter(QPainter):
         self._layout = layout
         self._center = center
         depth = layout.ring(1)[0] - layout.ring(0)[0]
-        self._points = min(max(self._font.pointSizeF() * depth / 40, 9.0), 15.0)
+        self._room_px = depth - _BESIDE_PX
+        self._points = self._fitting(
+            min(max(self._font.pointSizeF() * depth / 40, 9.0), 15.0), "100", bold=True
+        )
+
+    def _fitting(self, points: float, text: str, bold: bool) -> float:
+        """The font size at which a text fits into a ring, `points` at most; 0 where it would be unreadable.
+
+        Left and right of the middle the text lies along the radius, so that the ring's depth is its room.
+        """
+        width_px = QFontMetricsF(tabular(self._font, points, bold=bold)).horizontalAdvance(text)
+        fitting = points * min(self._room_px / width_px, 1.0)
+        return fitting if fitting >= _LEAST_POINTS else 0.0
 
     @property
     def _star_px(self) -> float:
@@ -96,9 +108,14 @@ class PourMapPainter(QPainter):
         if spread:
             arc = self._layout.inner_arc(i, j, min(spread / _FULL_ARC, 1.0), 5.0)
             self.strokePath(self._path(arc), QPen(ink, 3, Qt.PenStyle.SolidLine, Qt.PenCapStyle.FlatCap))
+        if not self._points:
+            return  # the colour says it, and the tooltip
         lines = [(f"{100 * value:.0f}", self._points, True)]
-        if small:
-            lines.append((small, max(self._points - 3, _LEAST_POINTS), False))
+        small_points = (
+            self._fitting(max(self._points - 3, _LEAST_POINTS), small, bold=False) if small else 0.0
+        )
+        if small_points:
+            lines.append((small, small_points, False))
         middle = place(self._center, *self._layout.middle(i, j))
         off = middle - self._star(i, j)
         middle += off * (away_px / max(hypot(off.x(), off.y()), 1.0))

@@ -153,3 +153,18 @@ def test_without_tries_and_in_a_comparison_colours_tell_p(pour_map):
     assert not pour_map.shows_clean
     pour_map.set_comparison(None)
     assert pour_map.shows_clean
+
+
+def n_inked(widget, i, j):
+    """How many pixels about the middle of a cell have its number's colour, far from the cell's own."""
+    image, at = widget.grab().toImage(), place(widget, i, j)
+    around = [image.pixelColor(at.x() + x, at.y() + y) for x in range(-6, 7) for y in range(-4, 5)]
+    return sum(abs(luminance(one) - luminance(around[0])) > 0.4 for one in around)
+
+
+def test_where_a_number_would_reach_into_its_neighbours_the_colour_alone_tells(pour_map):
+    pour_map.set_pours([MappedPour(i, j, i * pi / 4, 0.01, p=1.0) for i in range(8) for j in range(3)], None)
+    pour_map.resize(420, 480)
+    assert n_inked(pour_map, 2, 1) > 5
+    pour_map.resize(200, 280)
+    assert n_inked(pour_map, 2, 1) == 0
