@@ -36,8 +36,6 @@ LOWEST_PERCENT = 0.2
 """What may be noise below the object's foot."""
 SMALLEST_DISTANCE = np.float32(1e-4)
 """Marching cubes makes faces without area where a distance is exactly zero."""
-FLOOR_VOXELS = 1.5
-"""Thinner than a voxel, a floor may lie between two of them and be lost."""
 
 
 @dataclass(frozen=True)
@@ -210,33 +208,8 @@ def fill_unseen(volume: TsdfVolume, part: Part) -> DistanceGrid:
 
 def cut_at_height(distance: DistanceGrid, volume: TsdfVolume, part: Part, height_m: float) -> DistanceGrid:
     """Remove what lies below a horizontal plane in the base frame."""
-    _, _, z = _centers(volume, part)
+    _, _, z = centers_m(volume, part)
     return _above(distance, z - height_m, volume.truncation_m)
-
-
-def keep_floor(
-    distance: DistanceGrid, volume: TsdfVolume, part: Part, support_m: float, error_m: float
-) -> DistanceGrid:
-    """Give what is on the support a floor of `FLOOR_VOXELS` where it was seen to have one at all.
-
-    The inside of a low floor lies so near the support that noise puts half of it below: cut there, it is
-    full of holes. Where a column is solid anywhere from a little below the support to a voxel above it,
-    something kept the views from looking through to the table.
-
-    Args:
-        distance: (x, y, z) of the part, before it is cut at the support; below that it is filled, too.
-        volume: it is taken from.
-        part: it covers; reaches a little below the support.
-        support_m: height of the support.
-        error_m: how far a surface may err.
-    """
-    _, _, z = _centers(volume, part)
-    near = (z > support_m - error_m - volume.voxel_m) & (z < support_m + volume.voxel_m)
-    has_floor = np.any((distance < 0) & near, axis=2, keepdims=True)
-    thickness_m = FLOOR_VOXELS * volume.voxel_m
-    floor = np.abs(z - support_m - thickness_m / 2) - thickness_m / 2
-    kept = np.where(has_floor, np.minimum(distance, floor / volume.truncation_m), distance)
-    return kept.astype(np.float32)
 
 
 def cut_at_table(
@@ -247,7 +220,7 @@ def cut_at_table(
     Under and inside the object nothing is removed above the table, so that a low floor stays (in the
     footnote of Sec. IV-A a bag loses it).
     """
-    x, y, z = _centers(volume, part)
+    x, y, z = centers_m(volume, part)
     height_m = z - table.height_m(x, y)
     is_object = (distance < 0) & (height_m > margin_m)
     footprint: BoolArray = binary_fill_holes(np.any(is_object, axis=2).astype(np.bool_))
@@ -262,7 +235,7 @@ def _above(distance: DistanceGrid, height_m: npt.ArrayLike, truncation_m: float)
     return cut
 
 
-def _centers(volume: TsdfVolume, part: Part) -> tuple[FloatArray, FloatArray, FloatArray]:
+def centers_m(volume: TsdfVolume, part: Part) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Coordinates of the part's voxel centres, shaped to broadcast: (x, 1, 1), (1, y, 1), (1, 1, z)."""
     axes = [
         volume.origin_m[axis] + volume.voxel_m * np.arange(part.low[axis], part.high[axis])

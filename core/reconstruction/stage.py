@@ -18,6 +18,7 @@ from core.geometry import BoolArray
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
+from core.reconstruction.floor import SeenFloor, keep_floor, seen_floor
 from core.reconstruction.pose_health import Plane, PoseHealth, find_tables, pose_health_of
 from core.reconstruction.refinement import refine_poses
 from core.reconstruction.registration import PlaneImage, facing_image, fit_planes, view_surfaces
@@ -30,7 +31,6 @@ from core.reconstruction.segmentation import (
     fill_unseen,
     find_object,
     find_table,
-    keep_floor,
     touched_sides,
     whole,
 )
@@ -176,12 +176,16 @@ def _unseen_readings(found: _Found, solid: _ObjectField, support_m: float) -> Un
 
 @dataclass(frozen=True)
 class _ObjectField:
-    """Distances (X, Y, Z) in the object's part of a volume, where what no view saw was given a value."""
+    """Distances (X, Y, Z) in the object's part of a volume, where what no view saw was given a value.
+
+    Where a thin floor was made thick enough for the voxels, `floor` knows how high it was seen.
+    """
 
     volume: TsdfVolume
     part: Part
     distance: DistanceGrid
     keeps_specks: bool
+    floor: SeenFloor | None = None
 
     def freed(self, voxels: BoolArray) -> _ObjectField:
         """Take voxels (X, Y, Z) of the whole volume as free, whatever they were."""
@@ -201,7 +205,8 @@ class _ObjectField:
                 f"ends at {self.volume.centers_m(self.part.seen.max(axis=0))[2] * 1000:.0f} mm, so correct "
                 "reconstruction.platform_height_m."
             )
-        return mesh if self.keeps_specks else largest_piece(mesh)
+        piece = mesh if self.keeps_specks else largest_piece(mesh)
+        return piece if self.floor is None else self.floor.lowered(piece)
 
 
 def _object_field(found: _Found, parameters: ReconstructionParameters, support_m: float) -> _ObjectField:
@@ -211,13 +216,15 @@ def _object_field(found: _Found, parameters: ReconstructionParameters, support_m
     keeps_specks = not solid and table is None
     part = found.part if keeps_specks else _down_to_support(found, support_m)
     distance = fill_unseen(volume, part) if solid else volume.distance[part.slices]
+    floor = None
     if table is not None:
         distance = cut_at_table(distance, volume, part, table, parameters.plane_margin_m)
     elif solid:
         error_m = volume.falloff_m if np.isfinite(volume.falloff_m) else volume.voxel_m
+        floor = seen_floor(volume, part, support_m, error_m)
         distance = keep_floor(distance, volume, part, support_m, error_m)
         distance = cut_at_height(distance, volume, part, support_m)
-    return _ObjectField(volume, part, distance, keeps_specks)
+    return _ObjectField(volume, part, distance, keeps_specks, floor)
 
 
 def _warn_if_cut_off(

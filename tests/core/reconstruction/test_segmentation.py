@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 
-from core.reconstruction.segmentation import FLOOR_VOXELS, cut_at_height, keep_floor, whole
-from core.reconstruction.tsdf import TsdfVolume
+from core.mesh import TriangleMesh
+from core.mesh_topology import topology
+from core.reconstruction.floor import FLOOR_VOXELS, THINNEST_M, keep_floor, seen_floor
+from core.reconstruction.segmentation import cut_at_height, whole
+from core.reconstruction.tsdf import TsdfVolume, extract_surface
 
 VOXEL_M = 0.002
 SUPPORT_M = 0.1
@@ -51,3 +54,42 @@ def test_a_thick_floor_stays_as_it_is(volume):
     kept = keep_floor(distance, volume, whole(volume), SUPPORT_M, 0.002)
     above = volume.origin_m[2] + VOXEL_M * np.arange(distance.shape[2]) > SUPPORT_M + FLOOR_VOXELS * VOXEL_M
     assert np.array_equal(kept[:, :, above], distance[:, :, above])
+
+
+def surface_of(volume: TsdfVolume, true_m: np.ndarray) -> tuple[TriangleMesh, TriangleMesh]:
+    """The surface over a floor whose inside was measured at `true_m` (x, y): as kept, and as lowered."""
+    volume.distance[:] = solid_below(volume, true_m)
+    volume.weight[:] = 1
+    kept = keep_floor(volume.distance, volume, whole(volume), SUPPORT_M, 0.002)
+    cut = cut_at_height(kept, volume, whole(volume), SUPPORT_M)
+    mesh = extract_surface(cut, volume.origin_m, VOXEL_M)
+    return mesh, seen_floor(volume, whole(volume), SUPPORT_M, 0.002).lowered(mesh)
+
+
+def thickness_m(mesh: TriangleMesh) -> np.ndarray:
+    """Of the floor in its middle."""
+    middle = (np.abs(mesh.vertices_m[:, :2] - 0.02) < 0.012).all(axis=1)
+    heights_m = mesh.vertices_m[middle, 2] - SUPPORT_M
+    return heights_m[heights_m > VOXEL_M / 4]
+
+
+@pytest.mark.parametrize("true_m", [0.0013, 0.0016, 0.0022])
+def test_a_floor_thinner_than_its_voxels_is_as_thick_as_it_was_seen(volume, true_m):
+    noise_m = np.random.default_rng(1).normal(0.0, 0.0002, volume.distance.shape[:2])
+    kept, lowered = surface_of(volume, SUPPORT_M + true_m + noise_m)
+    assert np.median(thickness_m(kept)) > 0.0026
+    assert thickness_m(lowered) == pytest.approx(true_m, abs=0.0004)
+    assert topology(lowered).n_open == 0
+    assert lowered.volume_m3 < kept.volume_m3
+
+
+def test_a_floor_seen_below_the_support_keeps_a_least_thickness(volume):
+    _, lowered = surface_of(volume, np.full(volume.distance.shape[:2], SUPPORT_M - 0.001))
+    assert thickness_m(lowered) == pytest.approx(THINNEST_M, abs=1e-6)
+
+
+def test_a_floor_that_no_view_saw_is_not_lowered(volume):
+    shape = volume.distance.shape[:2]
+    volume.distance[:] = solid_below(volume, np.full(shape, SUPPORT_M + 0.0015))
+    volume.weight[:] = 0
+    assert np.isnan(seen_floor(volume, whole(volume), SUPPORT_M, 0.002).heights_m).all()
