@@ -231,6 +231,26 @@ def test_a_dry_run_is_the_whole_pour_slowly_each_move_confirmed_and_a_no_brings_
     assert step(real, step_names.DRY_RUN).state is StepState.OPEN
 
 
+class Leaving(Person):
+    """Says no to one move, and leaves."""
+
+    def confirm_recovery(self, error, is_repeated):
+        raise Cancelled("Nobody is there any more.")
+
+
+@pytest.mark.system
+@pytest.mark.punctual
+def test_the_cup_that_a_dry_run_left_in_the_hand_is_brought_back_by_the_next_one(real):
+    entered(real)
+    with pytest.raises(Cancelled):
+        dry_run(real, Reporter(), Leaving(refused="lay"))
+    assert step(real, step_names.DRY_RUN).state is StepState.OPEN
+    person = Person()
+    dry_run(real, Reporter(), person)
+    assert person.asked == ["cup in hand", "back off", "pour"]
+    assert person.is_back and step(real, step_names.DRY_RUN).state is StepState.DONE
+
+
 @pytest.mark.system
 def test_a_real_arm_makes_no_dry_run_without_somebody(real):
     entered(real)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QFormLayout, QPushButton, QWidget
 
@@ -27,6 +29,7 @@ class CupForm(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._shown: CupEntry | None = None
+        self._of: Path | None = None
         self._station = [_box(f"station_{axis}", -_REACH_MM, _REACH_MM, 1) for axis in "xyz"]
         self._length, self._wall = _box("cup_length", 20, 400, 1), _box("cup_wall", 0.5, 20, 1)
         self._mouth, self._base = _box("cup_mouth", 20, 400, 1), _box("cup_base", 5, 400, 1)
@@ -53,12 +56,12 @@ class CupForm(QWidget):
         self._payload.setToolTip(self.tr("All that hangs at the flange: gripper, camera and full cup"))
         self._cup_kg.setToolTip(self.tr("Of that the full cup; 0: the arm is not told when it holds one"))
 
-    def show_entry(self, entry: CupEntry, can_read: bool) -> None:
-        """Show what the file has; what was typed stays as long as the file is the same."""
+    def show_entry(self, cell_file: Path | None, entry: CupEntry, can_read: bool) -> None:
+        """Show what a cell's file has; what was typed stays as long as it is the same."""
         self.read.setVisible(can_read)
-        if entry == self._shown:
+        if (cell_file, entry) == (self._of, self._shown):
             return
-        self._shown = entry
+        self._of, self._shown = cell_file, entry
         self.show_station(entry.station_m)
         cup = entry.cup
         for box, value in (

@@ -90,7 +90,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
             self.side.options.show_board(board.board, board.is_measured)
         settings = self.desk.cell.settings
         if settings is not None:
-            self.side.options.cup.show_entry(entry_of(settings), settings.robot.is_real)
+            self.side.options.cup.show_entry(self.desk.cell.path, entry_of(settings), settings.robot.is_real)
         self.view.show_cell(self.content.shown, BoardSpec() if board is None else board.board)
         self.side.show_cells(self.content.known, self.desk.cell.path, self.is_new)
         self._show_evidence()
