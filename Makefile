@@ -146,8 +146,8 @@ film: setup-test
 
 # The appearance network anew, from nothing but a seed; needs what `pip install -e '.[train]'` brings.
 
-# The appearance network anew, from nothing but a seed; needs what `pip install -e '.[train]'` brings. All steps in a
-# few minutes, with nothing that is shipped changed: MEMBERS=144 EPOCHS=2 SHIPPED=build/short CURVES=build/short.png
+# The appearance network anew, from nothing but a seed; needs what `pip install -e '.[train]'` brings. All steps with
+# few views, and nothing that is shipped changed: MEMBERS=144 EPOCHS=2 SHIPPED=build/short CURVES=build/short.png
 TRAINED = build/appearance
 MEMBERS = 1300
 EPOCHS = 14
