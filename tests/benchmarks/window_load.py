@@ -71,6 +71,7 @@ def main() -> None:
             if number == 1 or number % _EVERY == 0:
                 print(f"{number} times through all pages: {_memory_mb():.0f} MB", flush=True)
         print(f"longest stall: {1000 * heartbeat.worst_s:.0f} ms, own {1000 * heartbeat.worst_own_s:.0f} ms")
+        heartbeat.deleteLater()  # it beats a hundred times a second
         window.show_page("imagination")
         let_work(2)
         _standing("Imagine, standing")
