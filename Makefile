@@ -128,9 +128,6 @@ window-start: setup-test
 window-tour: setup-test
 	$(SCREEN) .venv/bin/python -m tests.benchmarks.window_tour
 
-kills: setup-test
-	.venv/bin/python -m tests.benchmarks.kills
-
 ROUNDS = 20
 window-load: setup-test
 	$(SCREEN) .venv/bin/python -m tests.benchmarks.window_load $(ROUNDS)
