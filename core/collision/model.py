@@ -30,12 +30,14 @@ class CollisionModel:
         parts: meshes in metres, in the frame of the surface.
         surface: the true surface, simplified; its AABB decides which particle is inside (Sec. III-A).
         unseen: other surfaces that the scan allows, simplified as well; none where it saw everything.
+        surface_error_m: how far the surface of a scan may lie from the true one; zero if it was given.
     """
 
     method: str
     parts: tuple[TriangleMesh, ...]
     surface: TriangleMesh
     unseen: UnseenReadings | None = None
+    surface_error_m: float = 0.0
 
     @classmethod
     def exact(cls, surface: TriangleMesh, unseen: UnseenReadings | None = None) -> CollisionModel:
@@ -74,6 +76,7 @@ class CollisionModel:
             folder / _TABLE,
             {
                 "method": self.method,
+                "surface_error_m": self.surface_error_m,
                 "n_parts": len(self.parts),
                 "n_faces": len(join(self.parts).faces),
                 "aabb_min_m": self.aabb_min_m.tolist(),
@@ -94,7 +97,8 @@ class CollisionModel:
             faces = _cut(arrays["part_faces"], arrays["part_n_faces"])
             parts = tuple(TriangleMesh(v, f) for v, f in zip(vertices, faces, strict=True))
             surface = TriangleMesh(arrays["surface_vertices_m"], arrays["surface_faces"])
-            return cls(str(table["method"]), parts, surface, UnseenReadings.load(folder))
+            error_m = float(table.get("surface_error_m", 0.0))
+            return cls(str(table["method"]), parts, surface, UnseenReadings.load(folder), error_m)
         except (KeyError, ValueError) as error:
             raise SessionError(
                 f"The collision model in {folder} is damaged ({error}).", Remedy.RUN_AGAIN

@@ -39,6 +39,7 @@ class EvaluatedObject:
         sha256: of its mesh's file; empty if there is none.
         n_container: people who called it a container, where raw answers are known.
         n_asked: people asked; 0 where only labels are known.
+        capacity_ml: to its lowest rim; none where it is not known.
     """
 
     name: str
@@ -49,6 +50,7 @@ class EvaluatedObject:
     sha256: str = ""
     n_container: int = 0
     n_asked: int = 0
+    capacity_ml: float | None = None
 
     @classmethod
     def of(cls, one: LabelledObject, content: bytes | None) -> EvaluatedObject:
@@ -63,6 +65,7 @@ class EvaluatedObject:
             "" if content is None else hashlib.sha256(content).hexdigest(),
             0 if agreement is None else agreement.n_container,
             0 if agreement is None else agreement.n_asked,
+            one.capacity_ml,
         )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf, nan
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -55,6 +56,7 @@ class LabelledObject:
         is_restricted: whether it belongs to the restricted set (Sec. IV-B).
         is_calibration: whether parameters may be fitted to it.
         agreement: of the people who were asked, where the labels are raw answers; none otherwise.
+        capacity_ml: to its lowest rim; none where it is not known.
     """
 
     name: str
@@ -65,13 +67,15 @@ class LabelledObject:
     is_restricted: bool = False
     is_calibration: bool = False
     agreement: Agreement | None = None
+    capacity_ml: float | None = None
 
 
 def read_labels(folder: Path, labels: Path | None = None) -> tuple[LabelledObject, ...]:
     """Read the objects of a folder: meshes in it or in `meshes`, and a CSV with the columns id and label.
 
     Instead of labels the CSV may hold raw answers, with the columns object, annotator, contains and pourable:
-    then the majority decides (Sec. IV-B). The columns restricted and calib may mark objects.
+    then the majority decides (Sec. IV-B). The columns restricted and calib may mark objects, and capacity_ml
+    may say what they hold.
 
     Args:
         folder: that holds the meshes.
@@ -151,7 +155,24 @@ def _object(
         _is_marked(row, "restricted"),
         _is_marked(row, "calib"),
         agreement,
+        _capacity_ml(row, name),
     )
+
+
+def _capacity_ml(row: _Row, name: str) -> float | None:
+    text = _text(row, "capacity_ml")
+    if not text:
+        return None
+    try:
+        capacity_ml = float(text)
+    except ValueError:
+        capacity_ml = nan
+    if not 0 <= capacity_ml < inf:
+        raise InputError(
+            f"'{excerpt(text)}', the capacity_ml of '{excerpt(name)}', is no volume; give millilitres, or "
+            "leave it empty."
+        )
+    return capacity_ml
 
 
 def _label(path: Path, row: _Row) -> Label:

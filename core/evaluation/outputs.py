@@ -17,7 +17,15 @@ from pathlib import Path
 from typing import Any
 
 from core.evaluation.evaluation import Evaluation
-from core.evaluation.statistics import Figures, Share, agreement_of, figures_of, sets_of, stage_times
+from core.evaluation.statistics import (
+    Figures,
+    Share,
+    agreement_of,
+    capacity_figures,
+    figures_of,
+    sets_of,
+    stage_times,
+)
 from core.evaluation.tables import text_tables
 from core.evaluation.trials import Trial
 from core.files import write_json, write_whole
@@ -29,6 +37,7 @@ _COLUMNS = (
     *("id", "label", "omega", "predicted", "p_chosen", "poured", "spilled", "seconds"),
     *("seed", "variant", "category", "restricted", "calibration"),
     *("n_drop", "n_in", "measure", "threshold", "capacity_share", "capacity_candies", "capacity_ml"),
+    *("capacity_least_ml", "capacity_most_ml"),
     *("holds_rad", "choice_i", "choice_j", "clean_at_least", "declined", "n_tries", "n_feasible", "problem"),
 )
 
@@ -88,7 +97,15 @@ def summary_of(evaluation: Evaluation) -> dict[str, Any]:
         "failed": [_trial_table(one) | {"problem": one.problem} for one in evaluation.trials if one.problem],
         "undecided": [_trial_table(one) for one in evaluation.trials if one.is_undecided],
         "agreement": _agreement_table(evaluation),
+        "capacity": _capacity_table(evaluation, first),
     }
+
+
+def _capacity_table(evaluation: Evaluation, variant: str) -> dict[str, Any] | None:
+    found = capacity_figures(evaluation, variant)
+    if found is None:
+        return None
+    return {"within_10_percent": _share_table(found.near), "within_bounds": _share_table(found.within)}
 
 
 def _figures_table(found: Figures) -> dict[str, Any]:
@@ -185,7 +202,8 @@ def _csv_row(evaluation: Evaluation, trial: Trial) -> tuple[object, ...]:
         *(trial.n_pours, sum(trial.spilled), round(trial.total_s, 3)),
         *(trial.seed, trial.variant, one.category, int(one.is_restricted), int(one.is_calibration)),
         *(trial.n_drop, trial.n_in, "" if trial.score is None else trial.measure, trial.threshold),
-        *map(_cell, (trial.capacity_share, trial.capacity_candies, trial.capacity_ml, trial.holds_rad)),
+        *map(_cell, (trial.capacity_share, trial.capacity_candies, trial.capacity_ml)),
+        *map(_cell, (trial.capacity_least_ml, trial.capacity_most_ml, trial.holds_rad)),
         *(
             i,
             j,

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import sqrt
+from math import inf, sqrt
 from typing import TypeAlias
 
 from core.evaluation.evaluation import EvaluatedObject, Evaluation
@@ -321,6 +321,41 @@ class AgreementOfPeople:
 
     mean_share: float
     n_objects: Mapping[tuple[int, int], int]
+
+
+@dataclass(frozen=True)
+class CapacityFigures:
+    """How true the stated capacities of containers are whose true one is known.
+
+    Attributes:
+        near: those within `NEAR` of the true one.
+        within: those of which the true one lies between the stated least and most.
+    """
+
+    near: Share
+    within: Share
+
+
+NEAR = 0.1
+
+
+def capacity_figures(evaluation: Evaluation, variant: str) -> CapacityFigures | None:
+    """Return how true the capacities are; none where no container with a known one was measured."""
+    true_ml = {one.name: one.capacity_ml for one in evaluation.objects if one.label == "container"}
+    found = [
+        (true, one.capacity_ml, one.capacity_least_ml, one.capacity_most_ml)
+        for one in evaluation.of_variant(variant)
+        if (true := true_ml.get(one.name)) and one.capacity_ml is not None
+    ]
+    bounds = [
+        (true, least, inf if most is None else most) for true, _, least, most in found if least is not None
+    ]
+    if not found:
+        return None
+    return CapacityFigures(
+        Share(sum(abs(said / true - 1) <= NEAR for true, said, *_ in found), len(found)),
+        Share(sum(least <= true <= most for true, least, most in bounds), len(bounds)),
+    )
 
 
 def agreement_of(objects: Iterable[EvaluatedObject]) -> AgreementOfPeople | None:

@@ -9,7 +9,17 @@ from typing import Any
 
 from core.evaluation.best_view import ViewAccuracies, view_accuracies
 from core.evaluation.evaluation import Evaluation
-from core.evaluation.statistics import Figures, Interval, Share, auc_interval, figures_of, sets_of
+from core.evaluation.statistics import (
+    NEAR,
+    CapacityFigures,
+    Figures,
+    Interval,
+    Share,
+    auc_interval,
+    capacity_figures,
+    figures_of,
+    sets_of,
+)
 from core.evaluation.trials import Measure, measure_word
 from core.evaluation.variants import VARIANTS
 
@@ -150,6 +160,7 @@ def text_tables(evaluation: Evaluation) -> str:
         ),
         *(fill(line, WIDTH, subsequent_indent="  ") for line in _measure_lines(evaluation)),
         *_undecided_lines(evaluation),
+        *_capacity_lines(evaluation),
         *_view_lines(evaluation),
         "",
         "Table II: pours without a spilled candy, in %",
@@ -322,6 +333,25 @@ def _undecided_lines(evaluation: Evaluation) -> list[str]:
             said = f"Cannot tell ({variant}), counted as not right: {', '.join(names)}."
             lines.append(fill(said, WIDTH, subsequent_indent="  "))
     return lines
+
+
+def _capacity_lines(evaluation: Evaluation) -> list[str]:
+    """Say how true the capacities are, where the true ones are known."""
+    lines = []
+    for variant in evaluation.variants:
+        found = capacity_figures(evaluation, variant)
+        if found is not None:
+            lines.append(fill(f"{variant}: {capacity_sentence(found)}", WIDTH, subsequent_indent="  "))
+    return lines
+
+
+def capacity_sentence(found: CapacityFigures) -> str:
+    """Say how many capacities are near the true ones, and how often these lie within the stated bounds."""
+    near, within = found.near, found.within
+    said = f"capacity within {100 * NEAR:.0f} % of the true one: {near.count} of {near.n}"
+    if not within.n:
+        return f"{said}."
+    return f"{said}; the true one lies within the stated bounds: {within.count} of {within.n}."
 
 
 def _view_lines(evaluation: Evaluation) -> list[str]:

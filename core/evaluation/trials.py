@@ -60,6 +60,8 @@ class Trial(Scored):
         capacity_share: volume it holds as a share of its convex hull's; none if it was judged by Omega.
         capacity_candies: candies it holds level with its rim; none if not imagined.
         capacity_ml: bulk volume of these; none if not imagined.
+        capacity_least_ml: what `capacity_ml` truly is at least, as the program says; none if it says nothing.
+        capacity_most_ml: and at most; none likewise, and where part of the inside was not seen.
         unseen_ml: volume inside that no view saw, on which the answer depends; none where it does not.
         holds_rad: tilt up to which nothing leaves, in the worst direction; none if not imagined.
         p_chosen: P of the chosen pour (Eq. 4); none if it is no container.
@@ -93,6 +95,8 @@ class Trial(Scored):
     capacity_share: float | None = None
     capacity_candies: float | None = None
     capacity_ml: float | None = None
+    capacity_least_ml: float | None = None
+    capacity_most_ml: float | None = None
     unseen_ml: float | None = None
     holds_rad: float | None = None
     p_chosen: float | None = None

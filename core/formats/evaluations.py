@@ -39,6 +39,7 @@ class EvaluatedObject(TypedDict):
     sha256: NotRequired[str]
     n_container: NotRequired[Count]
     n_asked: NotRequired[Count]
+    capacity_ml: NotRequired[Number | None]
 
 
 class Evaluation(TypedDict):
@@ -71,6 +72,8 @@ class Trial(TypedDict):
     capacity_share: NotRequired[Number | None]
     capacity_candies: NotRequired[Number | None]
     capacity_ml: NotRequired[Number | None]
+    capacity_least_ml: NotRequired[Number | None]
+    capacity_most_ml: NotRequired[Number | None]
     unseen_ml: NotRequired[Number | None]
     holds_rad: NotRequired[Number | None]
     p_chosen: NotRequired[Number | None]

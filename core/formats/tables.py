@@ -127,6 +127,7 @@ class Collision(TypedDict):
     """`collision.json`."""
 
     method: str
+    surface_error_m: NotRequired[FiniteFloat]
 
 
 class Footprint(TypedDict):
@@ -149,6 +150,8 @@ class Verdict(TypedDict):
     has_stand_ins: NotRequired[bool]
     unseen_ml: NotRequired[FiniteFloat]
     other_share: NotRequired[FiniteFloat | None]
+    least_ml: NotRequired[FiniteFloat | None]
+    most_ml: NotRequired[FiniteFloat | None]
 
 
 class Drop(TypedDict):
@@ -188,6 +191,9 @@ class Capacity(TypedDict):
     explanation: str
     candies_per_ml: Annotated[FiniteFloat, Field(gt=0)]
     stand_in_diameter_m: NotRequired[FiniteFloat | None]
+    least_ml: NotRequired[FiniteFloat | None]
+    most_ml: NotRequired[FiniteFloat | None]
+    unseen_ml: NotRequired[FiniteFloat]
 
 
 class Holding(TypedDict):

@@ -79,6 +79,8 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         capacity.n_level,
         capacity.volume_ml,
         capacity.stand_in_diameter_m is not None,
+        least_ml=capacity.least_ml,
+        most_ml=capacity.most_ml,
     )
     return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity)
 

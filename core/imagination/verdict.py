@@ -23,6 +23,8 @@ class Verdict:
         has_stand_ins: whether larger balls were filled in place of candies: what they heap is no heap of
             candies.
         unseen_ml: volume behind its openings that no view saw; zero if that could not matter.
+        least_ml: what `level_ml` truly is at least, by what the scan leaves open; none if it was not scanned.
+        most_ml: and at most; none likewise, and where part of the inside was not seen.
         other_share: `capacity_share` if the unseen is not solid, which could change the answer; else none.
     """
 
@@ -35,6 +37,8 @@ class Verdict:
     has_stand_ins: bool = False
     unseen_ml: float = 0.0
     other_share: float | None = None
+    least_ml: float | None = None
+    most_ml: float | None = None
 
     @property
     def is_container(self) -> bool:

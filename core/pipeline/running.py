@@ -6,7 +6,7 @@ A run gets what it was promised and nothing else: the results of its inputs, and
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -29,6 +29,7 @@ from core.imagination.retention.imagine import imagine_retention
 from core.imagination.retention.result import RETENTION_FILE, Retention
 from core.imagination.risk.drawing import with_camera_error, with_scan_error
 from core.imagination.risk.tries import Tries, imagine_risk, try_pours
+from core.mesh import TriangleMesh
 from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions, feasible_pours
 from core.motion.pour.planning import judge_pours
@@ -40,6 +41,7 @@ from core.quality.measures import ScanQuality
 from core.reconstruction.colors import ModelColors
 from core.reconstruction.result import Reconstruction
 from core.stages import CAMERA_ERRORS, MESH, SCAN
+from core.unseen_readings import UnseenReadings
 from core.workers import RunHere, Task, TaskRunner
 
 _LARGEST_CAMERA_ERROR = 0.1
@@ -159,11 +161,17 @@ def _collide(given: Given) -> CollisionModel:
     surface, settings = given.surface, given.parameters.collision
     if isinstance(surface, GivenMesh) and surface.parts is not None and settings.method != "exact":
         return surface.parts
-    unseen = surface.unseen if isinstance(surface, Reconstruction) else None
+    if isinstance(surface, Reconstruction):
+        model = _body_of(surface.mesh, given, surface.unseen)
+        return replace(model, surface_error_m=surface.surface_error_m)
+    return _body_of(surface.mesh, given, None)
+
+
+def _body_of(mesh: TriangleMesh, given: Given, unseen: UnseenReadings | None) -> CollisionModel:
+    settings = given.parameters.collision
     if isinstance(given.tools.runner, RunHere):
-        return build_collision_model(surface.mesh, settings, given.tools.reporter, unseen)
-    task = Task(collision_job, (surface.mesh, settings, unseen))
-    model: CollisionModel = given.in_worker(task, "collision")
+        return build_collision_model(mesh, settings, given.tools.reporter, unseen)
+    model: CollisionModel = given.in_worker(Task(collision_job, (mesh, settings, unseen)), "collision")
     return model
 
 

@@ -198,6 +198,8 @@ def _of_verdict(verdict: Verdict | None) -> dict[str, Any]:
         "capacity_share": verdict.capacity_share,
         "capacity_candies": verdict.level_candies,
         "capacity_ml": verdict.level_ml,
+        "capacity_least_ml": verdict.least_ml,
+        "capacity_most_ml": verdict.most_ml,
         "unseen_ml": verdict.unseen_ml if verdict.is_undecided else None,
     }
 

@@ -56,8 +56,45 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
         model: the object's body.
         drop: on the same object: candies rain where those that stayed had been dropped.
     """
+    parameters = context.parameters
+    task = _basin_task(model.surface, parameters.particle.diameter_m, parameters)
+    basin: Basin = context.run([task], STAGE)[0]
+    found = _filled(context, model, drop, basin)
+    if model.surface_error_m == 0 or not found.n_kept:
+        return found
+    least_ml, most_ml = between_ml(found.volume_ml, basin, model.surface_error_m)
+    if model.unseen is not None:
+        return replace(found, least_ml=least_ml, unseen_ml=model.unseen.unseen_ml)
+    return replace(found, least_ml=least_ml, most_ml=most_ml)
+
+
+_INWARDS = 1 / 3
+"""Share of the surface's error by which a hollow comes out too large: what errs makes it smaller."""
+_RIM_M = 0.002
+"""The uppermost layer of a hollow tells how wide its mouth is."""
+
+
+def between_ml(volume_ml: float, basin: Basin, error_m: float) -> tuple[float, float]:
+    """Return the least and the most that a level volume may truly be.
+
+    All of the hollow's boundary, its mouth included, lies further in or out by the surface's error.
+
+    Args:
+        volume_ml: as imagined.
+        basin: the hollow.
+        error_m: how far the surface may lie from the true one.
+    """
+    if not len(basin.volumes_ml):
+        return volume_ml, volume_ml
+    top_m = float(basin.heights_m[-1])
+    below_ml = float(np.interp(top_m - _RIM_M, basin.heights_m, basin.volumes_ml))
+    mouth_m2 = (basin.candies_ml - below_ml) / ML / min(_RIM_M, top_m - float(basin.heights_m[0]))
+    shift_ml = (mouth_m2 + basin.around.floor_m2 + basin.around.side_m2) * error_m * ML
+    return float(max(volume_ml - _INWARDS * shift_ml, 0.0)), float(volume_ml + shift_ml)
+
+
+def _filled(context: ImaginationContext, model: CollisionModel, drop: Drop, basin: Basin) -> Capacity:
     parameters, surface, target = context.parameters, model.surface, context.target(model)
-    basin: Basin = context.run([_basin_task(surface, parameters.particle.diameter_m, parameters)], STAGE)[0]
     plan = _plan(basin, drop, parameters)
     if not drop.retained.any():
         return _result(plan, basin, (), surface, parameters)

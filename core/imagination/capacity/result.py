@@ -41,6 +41,9 @@ class Capacity:
         volumes_ml: (K,) volume below each height.
         candies_per_ml: in bulk, in this object.
         recording: the first filling, to look at; None if nothing was poured.
+        least_ml: level volume if the surface errs inwards as far as it may; none if it was not scanned.
+        most_ml: the same outwards; none likewise, and where part of the inside was not seen.
+        unseen_ml: of the inside, at least; zero if all was seen.
     """
 
     n_candies: float
@@ -61,6 +64,9 @@ class Capacity:
     candies_per_ml: float
     recording: Recording | None
     stand_in_diameter_m: float | None = None
+    least_ml: float | None = None
+    most_ml: float | None = None
+    unseen_ml: float = 0.0
 
     @property
     def n_level(self) -> float:
@@ -79,7 +85,18 @@ class Capacity:
         if self.stand_in_diameter_m is not None:
             diameter_mm, n_candies = 1000 * self.stand_in_diameter_m, self.candy_scale**3
             poured = f"Filled with balls of {diameter_mm:.0f} mm, each in place of {n_candies:.0f} candies."
-        return " ".join(filter(None, (poured, self.explanation)))
+        return " ".join(filter(None, (self.between, poured, self.explanation)))
+
+    @property
+    def between(self) -> str:
+        """How far the level volume can be trusted, in a sentence; empty if the surface was not scanned."""
+        if self.least_ml is None:
+            return ""
+        if self.most_ml is None:
+            return (
+                f"At least {self.least_ml:.0f} ml level; {self.unseen_ml:.0f} ml more inside were not seen."
+            )
+        return f"By what the scan leaves open, between {self.least_ml:.0f} and {self.most_ml:.0f} ml level."
 
     def level_of(self, n_candies: float) -> float:
         """Return the height above the inner floor (m) that a number of candies reaches; never above the rim.

@@ -1,4 +1,5 @@
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -150,3 +151,8 @@ def test_a_damaged_model_is_a_sentence(cup: TriangleMesh, tmp_path: Path) -> Non
     np.savez_compressed(tmp_path / "collision.npz", part_faces=np.zeros((1, 3)))
     with pytest.raises(SessionError, match="damaged"):
         CollisionModel.load(tmp_path)
+
+
+def test_how_far_a_scans_surface_errs_is_kept(cup: TriangleMesh, tmp_path: Path) -> None:
+    replace(CollisionModel.exact(cup), surface_error_m=0.0011).save(tmp_path)
+    assert CollisionModel.load(tmp_path).surface_error_m == 0.0011

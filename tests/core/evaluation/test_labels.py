@@ -42,11 +42,19 @@ def test_the_shared_objects_are_read(shared_data: Path) -> None:
         ("id,label\n,container\n", "it needs an id"),
         ("name,kind\nmug,container\n", "it needs an id"),
         ("id,label\nmug,container\nmug,container\n", "'mug' twice"),
+        ("id,label,capacity_ml\nmug,container,much\n", "'much', the capacity_ml of 'mug', is no volume"),
+        ("id,label,capacity_ml\nmug,container,-3\n", "'-3', the capacity_ml of 'mug', is no volume"),
     ],
 )
 def test_labels_that_cannot_be_used(tmp_path: Path, text: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
         read_labels(folder_with(tmp_path, text))
+
+
+def test_what_an_object_holds_may_be_known(tmp_path: Path) -> None:
+    rows = "id,label,capacity_ml\nmug,container,312.5\npot,container,\n"
+    mug, pot = read_labels(folder_with(tmp_path, rows))
+    assert (mug.capacity_ml, pot.capacity_ml) == (312.5, None)
 
 
 def test_which_csv_holds_the_labels(tmp_path: Path) -> None:

@@ -7,17 +7,21 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from core.evaluation.evaluation import EvaluatedObject
+from core.evaluation.outputs import summary_of
 from core.evaluation.statistics import (
+    CapacityFigures,
     Confusion,
     Figures,
     Margin,
     Share,
     agreement_of,
     auc_interval,
+    capacity_figures,
     sets_of,
     stage_times,
 )
-from core.evaluation.tables import figures_of
+from core.evaluation.tables import figures_of, text_tables
+from core.evaluation.trials import Trial
 from tests.core.evaluation.evaluations import (
     N_POURS,
     evaluation_of,
@@ -232,3 +236,26 @@ def test_a_perfect_auc_of_few_objects_is_not_certain() -> None:
     few, many = auc_interval(1.0, 5, 5), auc_interval(1.0, 50, 50)
     assert few[1] == many[1] == 1.0
     assert few[0] < many[0] < 1.0
+
+
+def test_how_true_the_capacities_are() -> None:
+    def measured(name: str, ml: float, least_ml: float | None, most_ml: float | None) -> Trial:
+        bounds = {"capacity_least_ml": least_ml, "capacity_most_ml": most_ml}
+        return held(name, "container", 0.5, capacity_ml=ml, **bounds)
+
+    trials = (
+        *(measured("mug", 95.0, 90.0, 101.0), measured("bowl", 80.0, 78.0, 90.0)),
+        *(measured("cup", 99.0, None, None), measured("unknown", 50.0, 40.0, 60.0)),
+        *(measured("vase", 60.0, 58.0, None), measured("urn", 120.0, 110.0, None)),
+        held("can", "non-container", 0.0, capacity_ml=100.0),
+    )
+    known = {"mug": 100.0, "bowl": 100.0, "cup": 100.0, "can": 0.0, "vase": 100.0, "urn": 100.0}
+    objects = tuple(EvaluatedObject(one.name, one.label, capacity_ml=known.get(one.name)) for one in trials)
+    evaluation = evaluation_of(*trials, objects=objects)
+    assert capacity_figures(evaluation, "imagination") == CapacityFigures(Share(2, 5), Share(2, 4))
+    said = "capacity within 10 % of the true one: 2 of 5; the true one lies within the stated bounds: 2 of 4."
+    assert said in " ".join(text_tables(evaluation).split())
+    assert summary_of(evaluation)["capacity"]["within_bounds"]["count"] == 2
+    nowhere = replace(evaluation, objects=tuple(replace(one, capacity_ml=None) for one in objects))
+    assert capacity_figures(nowhere, "imagination") is None
+    assert summary_of(nowhere)["capacity"] is None

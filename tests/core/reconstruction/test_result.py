@@ -41,6 +41,11 @@ def test_poses_as_recorded_are_kept_as_no_refinement(result, tmp_path):
     assert Reconstruction.load(tmp_path).refinement is None
 
 
+def test_the_surface_errs_by_some_view_errors(result):
+    assert result.surface_error_m == pytest.approx(3 * 3e-4)
+    assert replace(result, refinement=None).surface_error_m == 0
+
+
 def test_other_programs_read_the_mesh(result, tmp_path):
     result.save(tmp_path)
     read = trimesh.load(tmp_path / "mesh.ply", process=False)

@@ -9,6 +9,7 @@ from core.collision import CollisionModel
 from core.imagination.capacity.imagine import ARCH, imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.drop import imagine_drop
+from core.unseen_readings import UnseenReadings
 from core.workers import RunHere
 from tests.core.imagination.capacity.conftest import open_box
 from tests.core.imagination.capacity.test_openings import funnel
@@ -40,6 +41,22 @@ def test_a_dish_holds_its_inside(filled):
     assert filled.candy_scale > 1.2
     assert filled.explanation == ""
     assert filled.n_level == pytest.approx(filled.n_candies - filled.heaped_ml * filled.candies_per_ml)
+
+
+def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, filled, candies, few):
+    assert filled.least_ml is None and filled.between == ""
+    error_m = 0.001
+    scanned = fill(replace(exact_dish, surface_error_m=error_m), candies, few, RunHere())
+    assert scanned.volume_ml == filled.volume_ml
+    # Walls, floor and rim of the dish a millimetre further out.
+    more_ml = 92 * 52 * 37 / 1000 - 90 * 50 * 35 / 1000
+    assert scanned.most_ml - scanned.volume_ml == pytest.approx(more_ml, rel=0.2)
+    assert scanned.volume_ml - scanned.least_ml == pytest.approx(more_ml / 3, rel=0.2)
+    assert scanned.between in scanned.remark
+    unseen = UnseenReadings(40.0, exact_dish.surface)
+    hidden = fill(replace(exact_dish, surface_error_m=error_m, unseen=unseen), candies, few, RunHere())
+    assert (hidden.least_ml, hidden.most_ml) == (scanned.least_ml, None)
+    assert "40 ml more inside were not seen" in hidden.between
 
 
 def test_levels(filled):
