@@ -96,7 +96,7 @@ class Capacity:
             return (
                 f"At least {self.least_ml:.0f} ml level; {self.unseen_ml:.0f} ml more inside were not seen."
             )
-        return f"By what the scan leaves open, between {self.least_ml:.0f} and {self.most_ml:.0f} ml level."
+        return f"As closely as the scan tells: {self.least_ml:.0f} to {self.most_ml:.0f} ml level."
 
     def level_of(self, n_candies: float) -> float:
         """Return the height above the inner floor (m) that a number of candies reaches; never above the rim.
