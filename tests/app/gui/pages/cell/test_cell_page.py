@@ -14,12 +14,10 @@ from app.gui.pages.cell.step_list import StepRow
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
-from app.operations.calibration.cup import enter_cup
 from app.operations.calibration.cup_entry import entry_of
 from app.operations.calibration.provenance import read_looks, runs
 from app.operations.calibration.steps import enter_board
 from core.calibration.board import BoardSpec
-from core.progress import Reporter
 from hardware.cell import read_cell
 
 STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
@@ -207,24 +205,6 @@ def test_a_cup_is_entered_refused_with_the_reason_and_undone(qtbot, desk, page):
     press(qtbot, page, "undo")
     qtbot.waitUntil(lambda: states(page)["cup"] == "empty")
     assert read_cell(path).cup is None
-
-
-@pytest.mark.system
-@pytest.mark.punctual
-def test_a_dry_run_goes_through_a_pour_and_the_arm_is_shown(qtbot, desk, page):
-    path = new_cell("bench", is_simulated=True)
-    enter_cup(path, entry_of(read_cell(path)), Reporter())
-    choose(qtbot, desk, page, path)
-    pick(qtbot, page, "dry-run")
-    seen, failed = [], []
-    desk.arm.changed.connect(lambda: seen.append(desk.arm.status))
-    desk.jobs.failed.connect(lambda job, what: failed.append(str(what)))
-    press(qtbot, page)
-    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=240_000)
-    settle(qtbot, desk, page)
-    assert not failed and states(page)["dry-run"] == "fresh"
-    joints = [one.state.joints_rad for one in seen if one is not None and one.state is not None]
-    assert max(abs(one - joints[0]).max() for one in joints) > 0.5
 
 
 @pytest.mark.system
