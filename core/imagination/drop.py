@@ -87,15 +87,22 @@ def drop_positions(
     low, high = aabb_m
     n_x, n_y, n_z = grid_counts(high - low, pitch_m(particle, parameters), parameters)
     layers = high[2] + parameters.layer_height_m + parameters.layer_spacing_m * np.arange(n_z)
-    z, y, x = np.meshgrid(layers, _spread(low[1], high[1], n_y), _spread(low[0], high[0], n_x), indexing="ij")
+    at_edges = parameters.two_abreast == "edges"
+    x_m, y_m = _spread(low[0], high[0], n_x, at_edges), _spread(low[1], high[1], n_y, at_edges)
+    z, y, x = np.meshgrid(layers, y_m, x_m, indexing="ij")
     positions = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
     jitter: FloatArray = generator.uniform(-parameters.jitter_m, parameters.jitter_m, positions.shape)
     return positions + jitter
 
 
-def _spread(low: float, high: float, count: int) -> FloatArray:
-    """Spread `count` values from edge to edge, as the released code does; a single one in the middle."""
-    return np.linspace(low, high, count) if count > 1 else np.array([(low + high) / 2])
+def _spread(low: float, high: float, count: int, is_pair_at_edges: bool) -> FloatArray:
+    """Spread `count` values from edge to edge, as the released code does; a single one in the middle.
+
+    Two at the edges would both miss what is round.
+    """
+    if count > 2 or (count == 2 and is_pair_at_edges):
+        return np.linspace(low, high, count)
+    return low + (high - low) * (np.arange(count, dtype=np.float64) + 0.5) / count
 
 
 def _imagine_drop(target: ObjectAtRest, parameters: Parameters) -> Drop:

@@ -28,6 +28,11 @@ class ContainabilityParameters(Group):
         "Layers where there are too few candies: N_min / (N_x N_y) rounded up, or rounded down and one more.",
         source=f"{PAPER}, Sec. III-A; {CODE}: one_more",
     )
+    two_abreast: Literal["quarters", "edges"] = choice(
+        "quarters",
+        "Where candies fall across a side with room for two: a quarter of it inside its edges, or at them.",
+        source=f"{OURS}: at the edges all of them fall beside a small round cup; {CODE}: edges",
+    )
     layer_height_m: float = quantity(
         0.01,
         "Lowest layer above the object's AABB.",

@@ -1,8 +1,11 @@
 import numpy as np
 import pytest
+import trimesh
 
-from core.collision import from_parts
+from core.collision import CollisionModel, from_parts
 from core.imagination.drop import imagine_drop
+from core.mesh import TriangleMesh
+from core.mesh_topology import join
 from core.parameters import Parameters, apply_settings
 from tests.core.imagination.conftest import box
 from tests.core.imagination.here import here
@@ -52,3 +55,16 @@ def test_a_hollow_that_one_layer_fills_keeps_candies_but_counts_none(height_m, i
 
     assert omega("centre") > 0.5
     assert (omega("room_above") > 0.5) is is_counted
+
+
+@pytest.mark.parametrize("width_m", [0.032, 0.039, 0.045])
+def test_candies_find_into_a_small_round_cup(width_m):
+    """Its side has room for two candies: dropped at the edges of its box all of them would fall beside it."""
+    outer_m, floor_m, height_m = width_m / 2, 0.002, 0.036
+    wall = trimesh.creation.annulus(outer_m - 0.0015, outer_m, height_m, sections=48)
+    bottom = trimesh.creation.cylinder(outer_m, floor_m, sections=48)
+    bottom.apply_translation([0, 0, (floor_m - height_m) / 2])
+    cup = join([TriangleMesh(np.array(one.vertices), np.array(one.faces)) for one in (wall, bottom)])
+    found = imagine_drop(here(Parameters()), CollisionModel.exact(cup))
+    assert found.retained.sum() >= 5
+    assert np.hypot(*found.footprint.center_m[:2]) < 0.003
