@@ -56,7 +56,7 @@ def test_a_bowl_is_judged_poured_into_and_pictured(task):
     assert trial.n_pour == 15
     assert 0 < trial.n_feasible <= 24
     judged = {"mesh", "scan", "collision", "containability", "judgement"}
-    assert set(trial.seconds) == judged | {"pouring", "risk", "motion", "outcome"}
+    assert set(trial.seconds) == judged | {"pouring", "risk", "retention", "motion", "outcome"}
     assert result.pictures[trial.picture].startswith(b"\x89PNG")
 
 
