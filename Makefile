@@ -141,8 +141,6 @@ screenshots: setup-test
 film: setup-test
 	env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1280x800x24" .venv/bin/python -m tests.film docs/pictures
 
-# The appearance network anew, from nothing but a seed; needs what `pip install -e '.[train]'` brings.
-
 # The appearance network anew, from nothing but a seed; needs what `pip install -e '.[train]'` brings. All steps with
 # few views, and nothing that is shipped changed: MEMBERS=144 EPOCHS=2 SHIPPED=build/short CURVES=build/short.png
 TRAINED = build/appearance

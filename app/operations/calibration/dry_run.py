@@ -37,7 +37,8 @@ from core.workers import RunHere
 from hardware.cell import Arm, CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
 from hardware.interfaces import ReadyStep
-from hardware.pouring.pouring import PLAN_FOLDER, Pouring, no_question
+from hardware.pouring.pouring import PLAN_FOLDER, Pouring
+from hardware.pouring.procedure import no_question
 
 SHARE = 0.3
 """Of all speeds, the pour rotation's among them."""
