@@ -8,9 +8,9 @@ from statistics import fmean, pstdev
 import numpy as np
 
 from core.collision import CollisionModel
-from core.geometry import FloatArray
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.filling import Filling, FillPlan, filling_task, rain_places
+from core.imagination.capacity.openings import has_opening_below
 from core.imagination.capacity.result import Capacity
 from core.imagination.capacity.stand_in import (
     ball_diameter_m,
@@ -28,13 +28,19 @@ from core.parameters import Parameters
 from core.workers import Task
 
 STAGE = "capacity"
-ARCH = "Candies only arch over an opening that they can pass: slightly smaller ones fall through."
+ARCH = "Candies only arch over an opening that they can pass: smaller ones fall through."
 _HEAPED = 0.5
 """Share of what stays that lies below a rim, below which an arch is possible."""
 _SMALLER = 0.7
 """Size of smaller candies: over an opening that a candy just passes, they hardly arch."""
 _ARCHES = 0.5
 """A heap of smaller candies is hardly smaller."""
+_DRAINS = 0.1
+"""Water left in a hollow for candies, below which it has an opening that they do not pass, or only just."""
+_WIDE = 0.85
+"""Width of such an opening, in candies, from which on they may pass; a lattice takes it for narrower."""
+_FEW = 60
+"""Half as large candies that show whether they run out."""
 _HALF = 0.5
 """Candies half as large are asked about; a scan has gaps of its own that smaller ones would pass."""
 _FALL_THROUGH = 0.5
@@ -105,11 +111,9 @@ def _filled(context: ImaginationContext, model: CollisionModel, drop: Drop, basi
     half = _basin_task(surface, _HALF * parameters.particle.diameter_m, parameters)
     context.spare.append((half, for_half.append))
     fillings = _fill(context, target, plan)
-    if _is_mostly_heaped(fillings) and context.run([_opening_task(surface, drop, parameters)], STAGE)[0]:
-        smaller = _of_smaller_candies(plan, parameters)
-        also = _fill(context, target, smaller)
-        if _bulk_ml(smaller, also, basin) < _ARCHES * _bulk_ml(plan, fillings, basin):
-            return replace(_result(smaller, basin, also, surface, parameters), explanation=ARCH)
+    below = _below_an_arch(context, model, drop, plan, fillings)
+    if below is not None:
+        return replace(_result(below[0], basin, below[1], surface, parameters), explanation=ARCH)
     found = _result(plan, basin, fillings, surface, parameters)
     through = _of_half(basin, for_half[0], parameters)
     return replace(found, explanation=" ".join(filter(None, (found.explanation, through))))
@@ -129,22 +133,43 @@ def _fill(context: ImaginationContext, target: ObjectAtRest, plan: FillPlan) -> 
     return tuple(context.run(tasks, STAGE))
 
 
+def _below_an_arch(
+    context: ImaginationContext,
+    model: CollisionModel,
+    drop: Drop,
+    plan: FillPlan,
+    fillings: tuple[Filling, ...],
+) -> tuple[FillPlan, tuple[Filling, ...]] | None:
+    """Return what is left of smaller candies, where those that stay only arch over an opening; else none."""
+    parameters, target, basin = context.parameters, context.target(model), plan.basin
+
+    def has_opening(width_m: float) -> bool:
+        return bool(context.run([_opening_task(model.surface, drop, width_m)], STAGE)[0])
+
+    thinnest_m = float(particle_extents_m(parameters.particle).min())
+    if _is_mostly_heaped(fillings) and has_opening(_SMALLER * thinnest_m):
+        smaller = _of_smaller_candies(plan, parameters)
+        also = _fill(context, target, smaller)
+        if _bulk_ml(smaller, also, basin) < _ARCHES * _bulk_ml(plan, fillings, basin):
+            return smaller, also
+    drains = basin.water_ml < _DRAINS * basin.candies_ml
+    if drains and has_opening(_WIDE * ball_diameter_m(parameters.particle)):
+        few = replace(plan, stand_in=smaller_candy(parameters, _HALF), n_expected=_FEW)
+        also = _fill(context, target, few)
+        if sum(one.n_kept for one in also) < _ARCHES * sum(one.n_poured for one in also):
+            return few, also
+    return None
+
+
 def _is_mostly_heaped(fillings: tuple[Filling, ...]) -> bool:
     """Whether most of what stays lies above any rim: a heap on a floor, or an arch over an opening."""
     return sum(one.n_level for one in fillings) < _HEAPED * sum(one.n_kept for one in fillings)
 
 
-def _opening_task(surface: TriangleMesh, drop: Drop, parameters: Parameters) -> Task:
-    """Whether smaller candies could fall through below those that stayed."""
-    width_m = _SMALLER * float(particle_extents_m(parameters.particle).min())
+def _opening_task(surface: TriangleMesh, drop: Drop, width_m: float) -> Task:
+    """Whether something of a width could fall through below the candies that stayed."""
     places_m = drop.drop_positions_m[drop.retained, :2]
-    return Task(_has_opening_below, (surface, places_m, width_m, parameters.capacity.lattice_points), 1.0)
-
-
-def _has_opening_below(surface: TriangleMesh, places_m: FloatArray, width_m: float, points: int) -> bool:
-    from core.imagination.capacity.openings import has_opening_below  # loads numba: in the worker alone
-
-    return has_opening_below(surface, places_m, width_m, points)
+    return Task(has_opening_below, (surface, places_m, width_m), 1.0)
 
 
 def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:

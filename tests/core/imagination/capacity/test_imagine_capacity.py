@@ -104,6 +104,14 @@ def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few)
 
 
 @pytest.mark.system
+def test_a_jam_in_a_spout_that_candies_only_just_pass_is_not_held(candies, few):
+    found = fill(CollisionModel.exact(funnel(0.0140)), candies, few, RunHere())
+    assert found.geometric_volume_ml < 1 < 100 < found.candy_hollow_ml, "it only seems closed"
+    assert found.explanation == ARCH
+    assert found.n_candies < 5
+
+
+@pytest.mark.system
 def test_candies_that_only_arch_over_an_opening_are_not_held(candies, few):
     model = CollisionModel.exact(funnel(0.022))
     for seed in range(3, 10):  # with which seed they arch depends on the processor's rounding
