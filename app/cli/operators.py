@@ -9,6 +9,7 @@ from pathlib import Path
 from app.cli.remedies import worded
 from app.cli.terminal import TerminalReporter
 from app.operations import pouring
+from app.operations.unattended import Unattended
 from core.errors import Cancelled, InputError, NotAdvised, PoursightError, Remedy
 from core.imagination.amount.result import amount_text
 from core.motion.pour.plan import PlannedMove, PourPlan
@@ -20,10 +21,8 @@ from hardware.scanning.route import ScanRoute
 MM = 1000.0
 
 
-class PrintingOperator:
+class PrintingOperator(Unattended):
     """Prints what happens and confirms everything (`--yes`): a stopped run ends the command."""
-
-    is_present = False
 
     def __init__(self, session: Path, is_doubt_accepted: bool = False) -> None:
         self._session, self._is_doubt_accepted = session, is_doubt_accepted
@@ -44,31 +43,9 @@ class PrintingOperator:
         """Print the plan."""
         print("\n".join(plan_lines(plan, note)))
 
-    def confirm_step(self, step: ReadyStep, why: str) -> None:
-        """Nobody is asked: an arm that is not ready is not used."""
-
     def confirm_route(self, route: ScanRoute, robot: str) -> None:
         """Print the route."""
         print(f"The route of the {robot}: {route.sentence}")
-
-    def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:
-        """Nobody is asked: a stopped run has ended."""
-
-    def is_cup_in_hand(self, known: str) -> bool:  # noqa: ARG002
-        """Nobody is asked: a closed gripper is left as it is."""
-        return False
-
-    def confirm_opening(self, gripper: str, known: str) -> None:
-        """Nobody is asked: a closed gripper is left as it is."""
-
-    def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
-        """Nobody is asked: a stopped run has ended."""
-
-    def backed_off(self) -> None:
-        """Never: a stopped run has ended."""
-
-    def confirm_move(self, move: PlannedMove) -> None:
-        """Nobody is asked."""
 
     def counted(self, cup: Cup) -> Outcome | None:  # noqa: ARG002
         """Say how to enter it later."""

@@ -31,6 +31,7 @@ from core.stages import MESH, recorded_settings
 IMAGINED = ("containability", "judgement", "amount", "pouring", "risk")
 """The stages that lead to the chosen pour, in their order."""
 ALL_IMAGINED = (*IMAGINED, "retention")
+"""With what no pour waits for: how firmly the object holds."""
 
 
 @dataclass(frozen=True)

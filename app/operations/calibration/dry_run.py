@@ -5,7 +5,7 @@ Everything is what a pour has: plan, checks, driver, watch, log, and the way bac
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,7 +23,8 @@ from app.operations.calibration.provenance import (
     versions,
 )
 from app.operations.pouring import CupOperator, empty_hand, pour_cup
-from core.errors import InputError, MotionError, PoursightError
+from app.operations.unattended import Unattended
+from core.errors import InputError, MotionError
 from core.files import make_folder, write_json
 from core.motion.pour.cell import PourCell
 from core.motion.pour.plan import PlannedMove, PourPlan
@@ -36,7 +37,6 @@ from core.session.cups import Cup
 from core.workers import RunHere
 from hardware.cell import Arm, CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
-from hardware.interfaces import ReadyStep
 from hardware.pouring.pouring import PLAN_FOLDER, Pouring
 from hardware.pouring.procedure import no_question
 
@@ -96,7 +96,7 @@ def dry_run(
     _refuse_unentered(cell_file, settings)
     if settings.robot.is_real and operator is None:
         raise InputError("A real arm goes through a dry run only with somebody who confirms it.")
-    person: DryRunOperator = operator if operator is not None and settings.robot.is_real else _Nobody()
+    person: DryRunOperator = operator if operator is not None and settings.robot.is_real else Unattended()
     root = calibration_folder(cell_file) / step_names.DRY_RUN
     with explained(cell_file.parent):
         make_folder(root)
@@ -152,34 +152,3 @@ def _sentence(plan: PourPlan) -> str:
         f"{1000 * plan.clearance_m:.0f} mm clear of everything ({plan.nearest[0]} and {plan.nearest[1]}), "
         f"the cup {1000 * plan.cup_clearance_m:.0f} mm"
     )
-
-
-class _Nobody:
-    """At a simulated arm: nothing is asked, and a stop ends it."""
-
-    is_present = False
-
-    def confirm_pour(self, plan: PourPlan, note: str, robot: str, cup: Cup) -> None:
-        """Nothing real moves."""
-
-    def confirm_move(self, move: PlannedMove) -> None:
-        """Nothing real moves."""
-
-    def confirm_step(self, step: ReadyStep, why: str) -> None:
-        """A simulated arm is ready."""
-
-    def confirm_recovery(self, error: PoursightError, is_repeated: bool) -> None:
-        """It has ended."""
-
-    def is_cup_in_hand(self, known: str) -> bool:  # noqa: ARG002
-        """A simulated hand is empty when its controller begins."""
-        return False
-
-    def confirm_opening(self, gripper: str, known: str) -> None:
-        """Never asked."""
-
-    def confirm_back_off(self, moves: Sequence[PlannedMove]) -> None:
-        """It has ended."""
-
-    def backed_off(self) -> None:
-        """It has ended."""

@@ -256,11 +256,8 @@ def _cup(cell_file: Path) -> Step:
         return Step(step_names.CUP, StepState.OPEN, "enter where the cup stands, and how large it is")
     folder, table = latest
     with reading(folder):
-        time, said, is_same_place = (
-            str(table["time"]),
-            str(table["said"]),
-            table["for"] == reach_is_for(settings),
-        )
+        time, said = str(table["time"]), str(table["said"])
+        is_same_place = table["for"] == reach_is_for(settings)
         is_same_cup = is_cup_in_file(settings, table["after"])
     if not is_same_cup:
         return Step(

@@ -327,9 +327,9 @@ class ArmView(QWidget):
         elif self._motion is None:
             said = self.tr("The arm as it is now.")
         elif self._is_following:
-            said = self.tr("Solid: the arm now. Transparent: the plan, one second ahead.")
+            said = self.tr("Solid: the arm now. Transparent: in one second.")
         else:
-            said = self.tr("Solid: the arm now. Transparent: the plan at the time selected below.")
+            said = self.tr("Solid: the arm now. Transparent: the plan.")
         if self._candies.candies is not None and self._motion is not None:
             said += " " + self.tr("Candies: as imagined.")
         elif self._truth is not None:
