@@ -1,4 +1,4 @@
-"""What the driver asks of an arm at rest, several requests to the worker each."""
+"""What the driver asks of an arm at rest: several requests to the worker each, or one to the dashboard."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ import time
 
 from core.geometry import FloatArray
 from core.motion.trajectory import JointTrajectory
-from hardware.errors import MoveRefused
+from hardware.errors import MoveRefused, NotInRemoteControl, ProgramStopped, RobotError, RobotLost
+from hardware.robots.ur.checks import refuse_local_control
+from hardware.robots.ur.dashboard import Dashboard
 from hardware.robots.ur.joint_limits import JointLimits
 from hardware.robots.ur.link import WorkerLink
 from hardware.robots.ur.messages import tool_outputs
 
+DASHBOARD_STOP_S = 0.3
 _OUTPUT_WITHIN_S = 0.5
 _POLL_S = 0.004
 _ASKED_AT_ONCE = 10
@@ -62,6 +65,19 @@ def refuse_beyond_safety(
                 f"In the move '{label}' the arm would come where the safety limits of the {name} do not "
                 "allow it; see the joint limits under Installation, Safety, on its panel."
             ) from refused
+
+
+def end_program_after(error: RobotError, dashboard: Dashboard, name: str) -> RobotError:
+    """End our program after an error and return that, more exact where more is known by now."""
+    try:
+        dashboard.stop(DASHBOARD_STOP_S)
+        if isinstance(error, ProgramStopped):
+            refuse_local_control(dashboard, name)
+    except NotInRemoteControl as local:
+        return local
+    except RobotLost:
+        pass  # The watchdog ends the program.
+    return error
 
 
 def _outermost(joints_rad: FloatArray) -> FloatArray:

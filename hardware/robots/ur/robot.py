@@ -18,8 +18,6 @@ from core.motion.arm_models import ArmModel
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import (
-    NotInRemoteControl,
-    ProgramStopped,
     RobotError,
     RobotLost,
     RobotStopped,
@@ -28,8 +26,14 @@ from hardware.grippers.robotiq_line import RobotiqAddress
 from hardware.interfaces import Kinematics, ReadyStep, RobotState
 from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
-from hardware.robots.ur.asking import refuse_beyond_safety, switch_tool_output
+from hardware.robots.ur.asking import (
+    DASHBOARD_STOP_S,
+    end_program_after,
+    refuse_beyond_safety,
+    switch_tool_output,
+)
 from hardware.robots.ur.checks import (
+    deviation,
     raise_if,
     refuse_local_control,
     refuse_other_kinematics,
@@ -59,7 +63,7 @@ from hardware.robots.ur.readying import (
 STOP_ANSWER_S = 0.1
 """A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
 _CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
-_RESTS_WITHIN_S, _DASHBOARD_STOP_S, _RELEASED_WITHIN_S = 0.3, 0.3, 0.5
+_RESTS_WITHIN_S, _RELEASED_WITHIN_S = 0.3, 0.5
 
 _log = logging.getLogger(__name__)
 
@@ -202,7 +206,7 @@ class UR5Robot:
             why = str(error)
         _log.warning("The %s was stopped through its dashboard: %s", self.name, why)
         try:
-            connection.dashboard.stop(_DASHBOARD_STOP_S)
+            connection.dashboard.stop(DASHBOARD_STOP_S)
         except RobotLost as error:
             raise RobotLost(
                 f"The {self.name} cannot be reached for a stop ({error}); press the emergency stop if "
@@ -251,6 +255,7 @@ class UR5Robot:
             RobotError: something else has to be done by a person first; the sentence says what.
         """
         with self._command_lock:
+            self._end_stopped_program()
             self._disconnect()
             was_lost = isinstance(self._refusal, RobotLost)
             # Not later: a stop that comes meanwhile has to be recovered from anew. Not earlier: the old
@@ -340,6 +345,19 @@ class UR5Robot:
         refuse_power_supply(seen, self._tool, self.name)
         return seen
 
+    def _end_stopped_program(self) -> None:
+        """End our program that a stop of the controller has paused, where the worker has not said so yet.
+
+        Once the worker is gone nobody can tell whose program is paused.
+        """
+        was_said = self._refusal is not None and type(self._refusal) is not RobotStopped
+        if self._connection is None or was_said:
+            return
+        with suppress(RobotLost):
+            error = deviation(self._connection.worker.state())
+            if error is not None:
+                self._end_program(error)
+
     def _disconnect(self) -> None:
         connection, self._connection = self._connection, None
         if connection is not None:
@@ -385,16 +403,5 @@ class UR5Robot:
         self._end_program(error)
 
     def _end_program(self, error: RobotError) -> RobotError:
-        """End the program through the dashboard and return the error, more exact where that is known."""
         connection = self._connection
-        if connection is None:
-            return error
-        try:
-            connection.dashboard.stop(_DASHBOARD_STOP_S)
-            if isinstance(error, ProgramStopped):
-                refuse_local_control(connection.dashboard, self.name)
-        except NotInRemoteControl as local:
-            return local
-        except RobotLost:
-            pass  # The watchdog ends the program.
-        return error
+        return error if connection is None else end_program_after(error, connection.dashboard, self.name)

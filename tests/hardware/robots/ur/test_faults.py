@@ -18,6 +18,7 @@ from hardware.errors import (
     TrackingLost,
 )
 from hardware.grippers.tool_output import ToolOutputGripper
+from hardware.robots.ur.link import WorkerLink
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import AwakeClock, in_time, within
 from tests.hardware.robots.ur.bench import (
@@ -182,6 +183,20 @@ def test_a_program_that_does_not_start_is_said_and_a_protective_stop_waits_for_i
     with pytest.raises(RobotNotReady, match="does not start"):
         fast_bench.robot.recover()
     fast_bench.controller.command("heed uploads")
+    fast_bench.works_again()
+
+
+@pytest.mark.parametrize("was_stopped", [False, True])
+def test_a_recovery_asked_for_before_the_worker_has_said_what_happened_ends_our_paused_program(
+    fast_bench: Bench, monkeypatch: pytest.MonkeyPatch, was_stopped: bool
+) -> None:
+    if was_stopped:
+        fast_bench.robot.stop()
+    monkeypatch.setattr(WorkerLink, "_take", lambda self, message: None)
+    fast_bench.controller.command("protective stop")
+    wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
+    monkeypatch.undo()
+    fast_bench.robot.recover()
     fast_bench.works_again()
 
 
