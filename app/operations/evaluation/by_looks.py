@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,8 @@ _CUP_GRID_M = 0.004
 _TOUCH_M = 0.002
 """The cup touches what is nearer than this; its own points are 4 mm apart."""
 _EVERY = 5
+_N_VIEWS = 24
+"""Of Sec. V. A scan may end with a few more, into openings: those are imagination's, and not counted here."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +34,8 @@ class LookedAt:
     """A scan's views, as the network sees them.
 
     Attributes:
-        scan: the scan.
-        looks: of each of its views; none where the object is not seen.
+        scan: the scan, with the views that are looked at.
+        looks: of each of them; none where the object is not seen.
         top_down: index of the view from which pours are found.
     """
 
@@ -43,11 +45,12 @@ class LookedAt:
 
     @classmethod
     def of(cls, scan: Scan, parameters: ReconstructionParameters) -> LookedAt:
-        """Look at a scan.
+        """Look at a scan's first 24 views.
 
         Raises:
             InputError: the network's weights cannot be used.
         """
+        scan = replace(scan, frames=scan.frames[:_N_VIEWS])
         looks = look_at_scan(shipped_network(), scan, crop_box_of(scan, parameters))
         return cls(scan, looks, top_down_view(scan))
 

@@ -5,15 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.operations.evaluation.by_looks import touches
+from app.operations.evaluation.by_looks import LookedAt, touches
 from app.operations.evaluation.ground_truth import ideal_path
 from app.operations.evaluation.trial import TrialTask, run_trial
 from core.appearance.pouring import OFFSET_M
 from core.evaluation.variants import variants_of
 from core.mesh_file import write_ply
 from core.parameters import Parameters, apply_settings
+from core.scan.model import Scan
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
+from tests.core.appearance.looks import BOX, INTRINSICS, block_frame
 
 
 def task(folder, name: str, label: str, *variants: str, source: str = "scan", n_pours: int = 1) -> TrialTask:
@@ -51,6 +53,12 @@ def test_a_bowl_looks_like_a_container_from_above_and_is_poured_into(bowl):
         assert (trial.n_feasible, len(trial.spilled), trial.n_pour, trial.problem) == (1, 1, 15, "")
         assert trial.theta_rad == 0.0
         assert bowl.pictures[trial.picture].startswith(b"\x89PNG")
+
+
+def test_views_that_look_into_openings_are_not_looked_at():
+    frames = tuple(replace(block_frame(280, 200, 80, 80), name=f"frame-{k:06d}") for k in range(27))
+    looked = LookedAt.of(Scan(frames, INTRINSICS, crop_box=BOX), Parameters().reconstruction)
+    assert list(looked.facts["view_scores"]) == [frame.name for frame in frames[:24]]
 
 
 def test_without_images_there_are_no_looks(tmp_path):
