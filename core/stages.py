@@ -169,6 +169,11 @@ def stages_before(name: str, source: str) -> tuple[str, ...]:
     return tuple(known for known in STAGE_NAMES if known in wanted)
 
 
+def stages_that_end_with(name: str) -> tuple[str, ...]:
+    """Return the stages of whose inputs a stage is the last to be there."""
+    return tuple(one.name for one in STAGES if one.inputs[-1] == name)
+
+
 def groups_of(*names: str) -> tuple[str, ...]:
     """Return the groups of parameters that are any of some stages' own, in the schema's order.
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -28,10 +27,10 @@ class UnseenReadings:
     roomy: TriangleMesh
     leaky: TriangleMesh | None = None
 
-    def map(self, change: Callable[[TriangleMesh], TriangleMesh]) -> UnseenReadings:
-        """Return the same with changed surfaces."""
-        leaky = None if self.leaky is None else change(self.leaky)
-        return UnseenReadings(self.unseen_ml, change(self.roomy), leaky)
+    @property
+    def surfaces(self) -> tuple[TriangleMesh, ...]:
+        """The hollow one, and the leaking one if there is one."""
+        return (self.roomy,) if self.leaky is None else (self.roomy, self.leaky)
 
     def save(self, folder: Path) -> None:
         """Write the surfaces and `unseen.json` into an existing folder."""

@@ -16,7 +16,6 @@ from core.mesh_topology import is_convex, join, topology
 from core.parameters.reconstruction import CollisionParameters
 from core.progress import Reporter
 from core.quiet import quiet
-from core.unseen_readings import UnseenReadings
 
 STAGE = "collision"
 DECOMPOSITION_MAX_FACES = 2000
@@ -32,11 +31,8 @@ def build_collision_model(
     mesh: TriangleMesh,
     parameters: CollisionParameters,
     reporter: Reporter,
-    unseen: UnseenReadings | None = None,
 ) -> CollisionModel:
     """Make a body for the physics out of a mesh in metres; same arguments, same result.
-
-    `unseen` are other surfaces that a scan allows; they are simplified in the same way.
 
     Raises:
         StageError: the decomposition found no part.
@@ -45,13 +41,10 @@ def build_collision_model(
     reporter.progress(STAGE, 0, 1)
     reporter.raise_if_cancelled()
     surface = simplify(mesh, parameters.max_faces)
-    if unseen is not None:
-        unseen = unseen.map(lambda other: simplify(other, parameters.max_faces))
     if parameters.method == "exact":
-        model = CollisionModel.exact(surface, unseen)
+        model = CollisionModel.exact(surface)
     else:
-        parts = _decompose(surface, parameters, reporter)
-        model = CollisionModel(parameters.method, parts, surface, unseen)
+        model = CollisionModel(parameters.method, _decompose(surface, parameters, reporter), surface)
     reporter.progress(STAGE, 1, 1)
     return model
 

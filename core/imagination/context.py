@@ -11,6 +11,7 @@ from core.collision import CollisionModel
 from core.imagination.body import BodyFile, write_body
 from core.imagination.cup import cup_parts
 from core.imagination.object_at_rest import ObjectAtRest
+from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.parameters.bodies import CupParameters
 from core.progress import Reporter
@@ -46,6 +47,21 @@ class BodyFiles:
         return self._folder.path / f"{name}.obj"
 
 
+class MadeAhead:
+    """What idle processors made of surfaces before anybody asked for it."""
+
+    def __init__(self) -> None:
+        self._made: list[tuple[TriangleMesh, Any]] = []
+
+    def keep(self, surface: TriangleMesh, result: Any) -> None:
+        """Keep what was made of a surface."""
+        self._made.append((surface, result))
+
+    def of(self, surface: TriangleMesh) -> Any:
+        """Return what was made of that very surface; none if nothing was."""
+        return next((result for one, result in self._made if one is surface), None)
+
+
 SpareTask = tuple[Task, Callable[[Any], None]]
 """A task that something later will want, and what takes its result."""
 
@@ -60,6 +76,7 @@ class ImaginationContext:
         reporter: receives the progress.
         bodies: shared by all imaginations of a run.
         spare: fills processors that the next tasks leave idle; emptied by them.
+        drops_ahead: drops on other readings of the scan, made by spare tasks.
     """
 
     parameters: Parameters
@@ -67,6 +84,7 @@ class ImaginationContext:
     reporter: Reporter
     bodies: BodyFiles = field(default_factory=BodyFiles)
     spare: list[SpareTask] = field(default_factory=list)
+    drops_ahead: MadeAhead = field(default_factory=MadeAhead)
 
     def reading(self, parameters: Parameters) -> ImaginationContext:
         """Return the same with other parameters."""

@@ -33,13 +33,21 @@ def imagine_drop(context: ImaginationContext, model: CollisionModel) -> Drop:
     Raises:
         StageError: the object is smaller than a candy.
     """
+    found: Drop = context.run([drop_task(context, model)], STAGE)[0]
+    return found
+
+
+def drop_task(context: ImaginationContext, model: CollisionModel) -> Task:
+    """Return what a worker has to do for it.
+
+    Raises:
+        StageError: the object is smaller than a candy; found out before a worker starts.
+    """
     parameters, target = context.parameters, context.target(model)
     settings = parameters.containability
     extents_m = target.aabb_m[1] - target.aabb_m[0]
-    # Found out before a worker starts.
     grid_counts(extents_m, pitch_m(parameters.particle, settings), settings)
-    found: Drop = context.run([Task(_imagine_drop, (target, parameters), _DROP_WEIGHT)], STAGE)[0]
-    return found
+    return Task(_imagine_drop, (target, parameters), _DROP_WEIGHT)
 
 
 def grid_counts(

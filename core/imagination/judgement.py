@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from core.collision import CollisionModel
+from core.errors import StageError
 from core.files import read_json, write_json
 from core.imagination.capacity.basin import ML
 from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
-from core.imagination.drop import imagine_drop
+from core.imagination.drop import drop_task, imagine_drop
 from core.imagination.results import Containability, Drop
 from core.imagination.verdict import Verdict
 from core.mesh import TriangleMesh
@@ -85,6 +88,21 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
     return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity)
 
 
+def judge_ahead(context: ImaginationContext, model: CollisionModel) -> None:
+    """Let processors that the drop leaves idle begin with what the verdict may ask for.
+
+    Most objects of which nobody saw the bottom are containers if it is closed; then the leaking reading is
+    asked about.
+    """
+    leaky = None if model.unseen is None else model.unseen.leaky
+    by_omega = context.parameters.containability.verdict == "omega"
+    if leaky is None or by_omega or context.runner.workers == 1:
+        return
+    with suppress(StageError):  # smaller than a candy: the verdict says so if it comes to that
+        task = drop_task(context, CollisionModel.exact(leaky))
+        context.spare.append((task, partial(context.drops_ahead.keep, leaky)))
+
+
 def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
     """Imagine what the unseen may be otherwise, where that could change the answer.
 
@@ -96,7 +114,7 @@ def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict:
     if unseen is None or other is None:
         return verdict
     body = CollisionModel.exact(other)
-    share = capacity_share(context, body, imagine_drop(context, body))
+    share = capacity_share(context, body, context.drops_ahead.of(other) or imagine_drop(context, body))
     return replace(verdict, unseen_ml=unseen.unseen_ml, other_share=share)
 
 

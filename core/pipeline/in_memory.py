@@ -8,7 +8,6 @@ from time import perf_counter
 from typing import Any
 
 from core.collision import CollisionModel
-from core.imagination.context import ImaginationContext
 from core.imagination.imagination import Imagination
 from core.parameters import Parameters
 from core.pipeline.given_mesh import GivenMesh
@@ -71,8 +70,7 @@ class StageMemory:
 
     def _given(self, part: Parameters, result: Callable[[str], Any]) -> Given:
         tools = self._tools
-        context = ImaginationContext(part, tools.runner, tools.reporter, tools.bodies, tools.spare)
-        return Given(part, result, self._source, None, {}, tools, context)
+        return Given(part, result, self._source, None, {}, tools, tools.context(part))
 
 
 def imagine(

@@ -14,7 +14,6 @@ from core.reconstruction.colors import ModelColors, photographed
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
 from core.scan import crop_box_of, stored_scan
-from core.unseen_readings import UnseenReadings
 from core.workers import WorkerReporter
 
 JOBS_MODULE = __name__
@@ -50,9 +49,7 @@ def colors_job(scan_folder: Path, reconstruction_folder: Path) -> tuple[ModelCol
     return photographed(found.mesh, posed), []
 
 
-def collision_job(
-    mesh: TriangleMesh, parameters: CollisionParameters, unseen: UnseenReadings | None
-) -> tuple[CollisionModel, list[str]]:
+def collision_job(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[CollisionModel, list[str]]:
     """Build the collision model; return the result and what the user should know."""
     reporter = WorkerReporter()
-    return build_collision_model(mesh, parameters, reporter, unseen), reporter.warnings
+    return build_collision_model(mesh, parameters, reporter), reporter.warnings

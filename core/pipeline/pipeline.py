@@ -13,7 +13,6 @@ from core.errors import Remedy, SessionError, StageError
 from core.files import read_json, reading, write_json
 from core.formats.tables import Warnings
 from core.imagination.amount.reasoning import is_one_cup_asked_for
-from core.imagination.context import ImaginationContext
 from core.imagination.cup_runs import CupRuns
 from core.imagination.imagination import Imagination
 from core.imagination.kept_runs import KeptRuns
@@ -35,7 +34,7 @@ from core.reconstruction.result import Reconstruction
 from core.report import write_report
 from core.scan import Scan, read_scan, write_scan
 from core.session import Session, StageRecord
-from core.stages import GIVEN, MESH, SCAN, STAGE_NAMES, stage, stages_before
+from core.stages import GIVEN, MESH, SCAN, STAGE_NAMES, stage, stages_before, stages_that_end_with
 from core.workers import WorkerPool
 
 WARNINGS_FILE = "warnings.json"
@@ -282,6 +281,8 @@ class Pipeline:
         self._run(name, digests, settings)
 
     def _run(self, name: str, digests: dict[str, str], settings: dict[str, Any]) -> None:
+        for later in stages_that_end_with(name):
+            RUNS[later].ahead(self._given(later))
         started = perf_counter()
         result = RUNS[name].run(self._given(name))
         seconds = perf_counter() - started
@@ -325,7 +326,7 @@ class Pipeline:
             self.session.path,
             scan.parameters if scan else {},
             self._tools,
-            ImaginationContext(part, self.pool, self.reporter, self._tools.bodies, self._tools.spare),
+            self._tools.context(part),
         )
 
     def _prepare_cup_runs(self) -> None:
@@ -337,13 +338,7 @@ class Pipeline:
             if not is_one_cup_asked_for(self.parameters):
                 return
             part = stage("pouring").part(self.parameters)
-            context = ImaginationContext(
-                with_n_pour(part, self.parameters.pouring.n_pour),
-                self.pool,
-                self.reporter,
-                self._tools.bodies,
-                self._tools.spare,
-            )
+            context = self._tools.context(with_n_pour(part, self.parameters.pouring.n_pour))
             self._tools.cup_runs.prepare(context)
 
     def _record(self, name: str) -> StageRecord:

@@ -12,14 +12,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from core.collision import CollisionModel, build_collision_model
+from core.collision import CollisionModel, simplify
 from core.imagination.amount.reasoning import plan_amount
 from core.imagination.amount.result import PlannedAmount
 from core.imagination.choice import choose_pour
-from core.imagination.context import BodyFiles, ImaginationContext, SpareTask
+from core.imagination.context import BodyFiles, ImaginationContext, MadeAhead, SpareTask
 from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
-from core.imagination.judgement import Judgement, judge
+from core.imagination.judgement import Judgement, judge, judge_ahead
 from core.imagination.pours import imagine_pours
 from core.imagination.rendering.evidence import Evidence
 from core.imagination.rendering.render import render_evidence
@@ -42,7 +42,7 @@ from core.reconstruction.colors import ModelColors
 from core.reconstruction.result import Reconstruction
 from core.stages import CAMERA_ERRORS, MESH, SCAN
 from core.unseen_readings import UnseenReadings
-from core.workers import RunHere, Task, TaskRunner
+from core.workers import Task, TaskRunner
 
 _LARGEST_CAMERA_ERROR = 0.1
 """In metres and radians: what is larger comes from no calibration."""
@@ -60,6 +60,7 @@ class Tools:
         early: takes each still as soon as it is drawn; none: nobody waits for one.
         cell: whose arm shall pour; none: nobody asks about an arm.
         spare: what idle processors may compute already.
+        drops_ahead: what they made of it.
     """
 
     runner: TaskRunner
@@ -69,6 +70,13 @@ class Tools:
     early: Path | None = None
     cell: PourCell | None = None
     spare: list[SpareTask] = field(default_factory=list)
+    drops_ahead: MadeAhead = field(default_factory=MadeAhead)
+
+    def context(self, parameters: Parameters) -> ImaginationContext:
+        """Return the context of an imagination that reads these parameters."""
+        return ImaginationContext(
+            parameters, self.runner, self.reporter, self.bodies, self.spare, self.drops_ahead
+        )
 
 
 @dataclass(frozen=True)
@@ -114,6 +122,10 @@ class Result(Protocol):
         """Write it into an empty folder."""
 
 
+def _nothing_ahead(_: Given) -> None:
+    """Most stages cannot begin before all their inputs are there."""
+
+
 @dataclass(frozen=True)
 class StageRun:
     """How one stage runs.
@@ -121,10 +133,12 @@ class StageRun:
     Attributes:
         run: makes the result; none is a result, too: there was nothing to do.
         load: reads what the result's `save` wrote.
+        ahead: lets processors that the stage's last input leaves idle begin with it.
     """
 
     run: Callable[[Given], Result | None]
     load: Callable[[Path], Any]
+    ahead: Callable[[Given], None] = _nothing_ahead
 
 
 def _given(_: Given) -> Result | None:
@@ -168,11 +182,18 @@ def _collide(given: Given) -> CollisionModel:
 
 
 def _body_of(mesh: TriangleMesh, given: Given, unseen: UnseenReadings | None) -> CollisionModel:
+    """Make the body; what a scan allows as well is simplified in the same way, at the same time."""
     settings = given.parameters.collision
-    if isinstance(given.tools.runner, RunHere):
-        return build_collision_model(mesh, settings, given.tools.reporter, unseen)
-    model: CollisionModel = given.in_worker(Task(collision_job, (mesh, settings, unseen)), "collision")
-    return model
+    others = () if unseen is None else unseen.surfaces
+    tasks = [
+        Task(collision_job, (mesh, settings)),
+        *(Task(simplify, (o, settings.max_faces)) for o in others),
+    ]
+    (model, warnings), *simplified = given.tools.runner.run(tasks, "collision", given.tools.reporter)
+    for sentence in warnings:
+        given.tools.reporter.warn(sentence)
+    made: CollisionModel = model
+    return made if unseen is None else replace(made, unseen=UnseenReadings(unseen.unseen_ml, *simplified))
 
 
 def _drop(given: Given) -> Drop:
@@ -181,6 +202,10 @@ def _drop(given: Given) -> Drop:
 
 def _judge(given: Given) -> Judgement:
     return judge(given.context, given.result("collision"), given.result("containability"))
+
+
+def _judge_ahead(given: Given) -> None:
+    judge_ahead(given.context, given.result("collision"))
 
 
 def _tilt(given: Given) -> Retention | None:
@@ -295,7 +320,7 @@ RUNS: dict[str, StageRun] = {
     "colors": StageRun(_color, ModelColors.load),
     "collision": StageRun(_collide, CollisionModel.load),
     "containability": StageRun(_drop, Drop.load),
-    "judgement": StageRun(_judge, Judgement.load),
+    "judgement": StageRun(_judge, Judgement.load, _judge_ahead),
     "amount": StageRun(_plan_amount, PlannedAmount.load),
     "pouring": StageRun(_pour, _load_pours),
     "risk": StageRun(_try_pours, Tries.load),

@@ -1,13 +1,16 @@
 import pytest
 
 from core.collision import CollisionModel
-from core.imagination.judgement import Judgement
+from core.imagination.context import ImaginationContext
+from core.imagination.drop import imagine_drop
+from core.imagination.judgement import Judgement, judge, judge_ahead
 from core.mesh import TriangleMesh
 from core.mesh_topology import join
 from core.parameters import apply_settings
 from core.pipeline.in_memory import imagine
 from core.progress import Reporter
 from core.unseen_readings import UnseenReadings
+from core.workers import RunHere
 
 FEW = {
     "containability.verdict": "capacity",
@@ -106,3 +109,43 @@ def test_the_unseen_does_not_matter_where_the_answer_stays(dish, few, pool):
     verdict = imagine(hidden, few, pool, Reporter()).containability.verdict
     assert verdict.is_container and not verdict.is_undecided
     assert verdict.other_share == verdict.capacity_share
+
+
+class Counting:
+    """A pool that remembers what ran for which stage."""
+
+    def __init__(self, pool):
+        self.workers, self._pool, self.ran = pool.workers, pool, []
+
+    def run(self, tasks, stage, reporter, found=None):
+        self.ran += [(stage, len(tasks))]
+        return self._pool.run(tasks, stage, reporter, found)
+
+
+def test_what_may_leak_is_dropped_on_beside_the_drop_itself_with_the_same_answer(dish, pipe, few, pool):
+    hidden = CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface, pipe))
+
+    def judged(is_ahead: bool):
+        context = ImaginationContext(few, counting := Counting(pool), Reporter())
+        if is_ahead:
+            judge_ahead(context, hidden)
+        verdict = judge(context, hidden, imagine_drop(context, hidden)).verdict
+        return verdict, [n for stage, n in counting.ran if stage == "containability"]
+
+    ahead, later = judged(True), judged(False)
+    assert ahead[0] == later[0] and ahead[0].is_undecided
+    assert (ahead[1], later[1]) == ([2], [1, 1])
+
+
+def test_nothing_is_begun_ahead_that_no_answer_asks_for(dish, pipe, few, pool):
+    seen = UnseenReadings(40.0, dish.surface)
+    leaking = UnseenReadings(40.0, dish.surface, pipe)
+    by_omega = apply_settings(few, {"containability.verdict": "omega"})
+    for unseen, parameters, runner in (
+        (seen, few, pool),
+        (leaking, by_omega, pool),
+        (leaking, few, RunHere()),
+    ):
+        context = ImaginationContext(parameters, runner, Reporter())
+        judge_ahead(context, CollisionModel.exact(dish.surface, unseen))
+        assert not context.spare
