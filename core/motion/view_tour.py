@@ -6,9 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components, dijkstra
-from scipy.spatial import KDTree
 
 from core.errors import MotionError
 from core.geometry import BoolArray, FloatArray, IntArray
@@ -180,6 +177,8 @@ class Roadmap:
 
     def __init__(self, scene: MotionScene, joints_rad: FloatArray, min_clearance_m: float) -> None:
         """Connect each of the configurations (N, 6) with its neighbours, where the straight move is clear."""
+        from scipy.sparse import coo_array  # late, as everywhere here: it costs the window memory
+
         self._joints_rad = joints_rad
         edges = _neighbours(joints_rad)
         edges = edges[clear_moves(scene, joints_rad[edges[:, 0]], joints_rad[edges[:, 1]], min_clearance_m)]
@@ -190,12 +189,16 @@ class Roadmap:
 
     def connected_to(self, node: int) -> BoolArray:
         """Which configurations (N,) can be reached from one of them."""
+        from scipy.sparse.csgraph import connected_components
+
         _, part = connected_components(self._net, directed=False)
         connected: BoolArray = part == part[node]
         return connected
 
     def path(self, start: int, goal: int) -> FloatArray:
         """The shortest path (M, 6) over the roadmap between two connected configurations."""
+        from scipy.sparse.csgraph import dijkstra
+
         _, before = dijkstra(self._net, False, np.array(start), True)
         nodes = [goal]
         while nodes[-1] != start:
@@ -205,6 +208,8 @@ class Roadmap:
 
 def _neighbours(joints_rad: FloatArray) -> IntArray:
     """Pairs (E, 2) of configurations that are close to each other by their largest joint displacement."""
+    from scipy.spatial import KDTree
+
     k = min(_NEIGHBOURS + 1, len(joints_rad))
     near = np.asarray(KDTree(joints_rad).query(joints_rad, k=k, p=np.inf)[1]).reshape(len(joints_rad), k)
     pairs = np.stack([np.repeat(np.arange(len(joints_rad)), k), near.ravel()], axis=1)

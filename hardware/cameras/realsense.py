@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import map_coordinates
 
 from core.geometry import FloatArray
 from core.scan.model import ColorImage, DepthImage, Intrinsics
@@ -329,6 +328,8 @@ class ColorOptics:
         """Return (H, W, 3) without distortion, as a copy."""
         if self._source is None:
             return image.copy()
+        from scipy.ndimage import map_coordinates  # late: it costs the window memory
+
         channels = [
             map_coordinates(image[..., channel], self._source, order=1, mode="nearest")
             for channel in range(3)

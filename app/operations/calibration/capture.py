@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 
 from app.operations.animating import animated
@@ -142,6 +141,8 @@ class Capture:
         self.collection.looks.append(look)
         png = None
         if image is not None:
+            import cv2  # late: it costs the window memory
+
             png = cv2.imencode(".png", cv2.cvtColor(image.color, cv2.COLOR_RGB2BGR))[1].tobytes()
         write_looks(self.folder, self.facts, self.collection.looks, png)
         self.observer.taken(look, len(self.collection.views), image)

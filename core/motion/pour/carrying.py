@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from core.geometry import BoolArray, FloatArray, IntArray
 from core.motion.joint_path import shortcuts
@@ -22,6 +21,9 @@ from core.motion.pour.plan import Segment
 from core.motion.pour.scene import PourScene, too_close
 from core.motion.pour.station import Grip, lifted_m
 from core.motion.pour.tool_path import ToolPath
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 _N_ANGLES, _N_AZIMUTHS = 16, 12
 """24 and 24 take longer and find fewer pours: those that are tried first are then too similar."""
@@ -80,6 +82,8 @@ class Lattice:
         if not len(nodes):
             n = len(self.places)
             return np.full(n, np.inf), np.full(n, -1)
+        from scipy.sparse.csgraph import dijkstra  # late: it costs the window memory
+
         cost, before, _ = dijkstra(self.net, False, nodes, True, min_only=True)
         return cost, before.astype(np.int64)
 
@@ -182,6 +186,8 @@ def _net(
     """Connect neighbours along each axis of a lattice (A, R, H, Z, 4) where it is also clear half-way;
     `joints` (U, 6) are those of the clear placements.
     """
+    from scipy.sparse import coo_array
+
     n = int(clear.sum())
     numbers = np.full(clear.shape, -1)
     numbers[clear] = np.arange(n)

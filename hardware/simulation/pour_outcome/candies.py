@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from math import asin, cos, floor, pi, radians, sin
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
 from core.geometry import FloatArray, ellipsoid_inertia_kg_m2, transform_points
@@ -44,6 +43,8 @@ class Candies:
         """Return them moved by (4, 4), or seen from another frame."""
         if not len(self.scales):
             return self
+        from scipy.spatial.transform import Rotation  # late: it costs the window memory
+
         rotation = Rotation.from_matrix(T_to_from[:3, :3])
         quaternions: FloatArray = (rotation * Rotation.from_quat(self.quaternions)).as_quat()
         return Candies(self.scales, transform_points(T_to_from, self.positions_m), quaternions)

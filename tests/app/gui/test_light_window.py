@@ -15,6 +15,8 @@ HEAVY = (
     "pybullet",
     "open3d",
     "trimesh",
+    "scipy",
+    "cv2",
     "optuna",
     "rtde_control",
     "core.reconstruction.tsdf",
