@@ -66,7 +66,7 @@ class Series:
     Attributes:
         job: that is killed.
         root: of its folders.
-        seconds: the command takes when it is not killed.
+        seconds: the command takes when it is not killed, or what was left of it took.
         moments: what was the last to be finished when it was killed, and how often.
         n_kills: so far.
         problems: that were found.
@@ -101,7 +101,9 @@ class Series:
         """Kill once; what is finished by then is whole, and what was finished before still there."""
         before = self.job.finished(self.place)
         with self._start() as process:
+            began_s = time.monotonic()
             said = _until(process, pick.uniform(0.1, 1.0) * self.seconds)
+            elapsed_s = time.monotonic() - began_s
             process.kill()
         self.problems += window_kills.stayed(self.temporary)
         after = self.job.finished(self.place)
@@ -112,6 +114,7 @@ class Series:
             self.moments[list(after)[-1] if after else "nothing"] += 1
         else:  # it came to its end: another one from the beginning
             self._check_end(process.returncode, said)
+            self.seconds = min(self.seconds, elapsed_s)  # what is left of it, or the machine is quicker now
             self._prepare()
 
     def end(self) -> None:
