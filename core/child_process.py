@@ -8,6 +8,7 @@ and it ends when its parent is gone, however that came about.
 
 from __future__ import annotations
 
+import fcntl
 import multiprocessing
 import os
 import signal
@@ -31,7 +32,6 @@ SPAWN = multiprocessing.get_context("spawn")
 
 STDOUT, STDERR = 1, 2
 _STOPPING = {signal.SIGINT, signal.SIGTERM}
-_GRACE_S = 0.1
 _environment_lock = threading.Lock()
 _KILL_AT_EXIT = 10  # before multiprocessing waits for all children, which do not hear its SIGTERM
 
@@ -53,7 +53,7 @@ class ChildProcess:
         *arguments: Unpack[Arguments],
         name: str,
         silenced: Sequence[int] = (STDOUT,),
-        grace_s: float = _GRACE_S,
+        grace_s: float = 0.0,
         environment: Mapping[str, str] | None = None,
     ) -> None:
         """Start the child; it takes some tenths of a second until `target` is called.
@@ -111,13 +111,14 @@ class ChildProcess:
             _kill(self._process)
 
 
-def become_child(silenced: Sequence[int] = (STDOUT,), grace_s: float = _GRACE_S) -> None:
+def become_child(silenced: Sequence[int] = (STDOUT,), grace_s: float = 0.0) -> None:
     """Make this process a well-behaved child; what `ChildProcess` starts has called it already.
 
     Args:
         silenced: file descriptors whose output is dropped: PyBullet, its EGL plugin and ur_rtde write from C
             where people expect only what they asked for.
-        grace_s: how long the process may go on when its parent is gone.
+        grace_s: how long the process may go on when its parent is gone; with one it goes on, too, while a
+            library holds the interpreter.
     """
     for number in _STOPPING:
         signal.signal(number, signal.SIG_IGN)
@@ -126,6 +127,8 @@ def become_child(silenced: Sequence[int] = (STDOUT,), grace_s: float = _GRACE_S)
     for descriptor in silenced:
         os.dup2(nowhere, descriptor)
     os.close(nowhere)
+    if not grace_s:
+        _be_killed_after_parent()
     threading.Thread(target=_end_after_parent, args=(grace_s,), daemon=True).start()
 
 
@@ -153,6 +156,21 @@ def _run(
     """In the child."""
     become_child(silenced, grace_s)
     target(connection, *arguments)
+
+
+def _be_killed_after_parent() -> None:
+    """Have the system do it: no thread of ours runs while a library holds the interpreter, for many seconds.
+
+    The parent's end of a pipe that it never writes to again is closed when it ends. `PR_SET_PDEATHSIG` would
+    kill already when the thread ends that started this process. Source: Linux, fcntl(2), "F_SETSIG".
+    """
+    parent = multiprocessing.parent_process()
+    if parent is None or not hasattr(fcntl, "F_SETSIG"):
+        return
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETSIG, signal.SIGKILL)
+    flags = fcntl.fcntl(parent.sentinel, fcntl.F_GETFL)
+    fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, flags | os.O_ASYNC)
 
 
 def _end_after_parent(grace_s: float) -> NoReturn:

@@ -164,9 +164,10 @@ class ArmWork(Service):
             connected.is_at_work = True
             robot = connected.arm.robot
             try:
+                stopped = connected.pouring or robot  # a pour writes down what is done
                 if step is not None:
-                    robot.take_step(step)
-                (connected.pouring or robot).recover()  # a pour writes it down
+                    stopped.take_step(step)
+                stopped.recover()
             except RobotError:
                 connected.must_recover = True
                 pending = robot.pending_step()

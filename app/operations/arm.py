@@ -90,6 +90,10 @@ class Recoverable(Protocol):
         """Make the arm accept moves again; raises `RobotError` if a person has to do something first."""
         ...
 
+    def take_step(self, step: ReadyStep) -> None:
+        """Do what has to be done first; raises `RobotError` if it could not be done."""
+        ...
+
 
 def recover(stopped: Recoverable, robot: Robot, operator: ArmOperator, error: PoursightError) -> None:
     """Make what was stopped ready again, as often as its operator tries; nothing moves.
@@ -109,6 +113,6 @@ def recover(stopped: Recoverable, robot: Robot, operator: ArmOperator, error: Po
                 continue
         operator.confirm_step(*pending)
         try:
-            robot.take_step(pending[0])
+            stopped.take_step(pending[0])
         except DeviceError as reason:
             operator.confirm_recovery(reason, is_repeated=True)

@@ -27,7 +27,7 @@ from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings, open_arm, read_cell
 from hardware.cell.scene import pour_cell
-from hardware.errors import DeviceError
+from hardware.errors import DeviceError, MoveRefused, RobotError
 from hardware.pouring.pouring import Pouring
 
 if TYPE_CHECKING:
@@ -290,16 +290,19 @@ def empty_hand(pouring: Pouring, operator: CupOperator) -> None:
 def _return(operator: CupOperator, pouring: Pouring) -> None:
     """Let an arm that is ready back off with the cup, as often as it is stopped; then it can plan again.
 
-    Where the arm was pushed off its checked path there is no way back along it: somebody takes what is in the
-    hand, and the next plan begins where the arm is.
+    Where the arm was pushed off its checked path, or its controller does not allow that path any more, there
+    is no way back along it: somebody takes what is in the hand, and the next plan begins where the arm is.
     """
     while pouring.is_interrupted:
         try:
             moves = pouring.plan_back_off()
-        except MotionError as error:
+        except (MotionError, MoveRefused) as error:
             operator.confirm_opening(pouring.gripper, str(error))
             pouring.give_up_way_back()
             return
+        except RobotError as error:  # such as a slider at 0, or an arm that was stopped meanwhile
+            recover(pouring, pouring.robot, operator, error)
+            continue
         operator.confirm_back_off(moves)
         try:
             pouring.back_off(moves)

@@ -106,6 +106,8 @@ class ScanRun:
         if self._watch is None:
             self._take_once(request)
             return
+        from hardware.pouring.recovering import LoggedRecovery
+
         operator, log = self._watch.operator, self._watch.log
         while True:
             try:
@@ -115,8 +117,7 @@ class ScanRun:
             except (RobotError, Cancelled) as error:
                 if not operator.is_present or self._moving is None or not self._moving.was_stopped:
                     raise
-                recover(self._cell.robot, self._cell.robot, operator, error)
-                log.event("recovered", "The arm was made ready again.")
+                recover(LoggedRecovery(self._cell.robot, log), self._cell.robot, operator, error)
 
     def _take_once(self, request: ScanRequest) -> None:
         from hardware.scanning.next_best_views import look_inside, take_next_best_views

@@ -6,7 +6,8 @@ Between the steps a person decides; nothing here asks, and nothing continues by 
 from __future__ import annotations
 
 import time
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -27,8 +28,9 @@ from core.session.swapping import flush
 from hardware.cell import Arm
 from hardware.driving import SAME_PLACE_RAD, SlownessTold, WatchedArm, refuse_restricted
 from hardware.errors import RobotError
-from hardware.interfaces import Robot
+from hardware.interfaces import ReadyStep, Robot
 from hardware.pouring.procedure import ConfirmMove, PourProcedure, no_question
+from hardware.pouring.recovering import LoggedRecovery
 from hardware.pouring.run_log import RunLog, driven_pivot_error_m
 
 PLAN_FOLDER = "plan"
@@ -154,16 +156,25 @@ class Pouring:
         Raises:
             RobotError: a person has to do something first; the sentence says what.
         """
-        self._arm.robot.recover()
-        if self.last_run is not None:
-            with RunLog(self.last_run) as log:
-                log.event("recovered", "The arm was made ready again.")
+        with self._recovering() as arm:
+            arm.recover()
+
+    def take_step(self, step: ReadyStep) -> None:
+        """Do what has to be done first, which somebody confirmed; the arm follows no path.
+
+        Raises:
+            RobotError: it could not be done.
+        """
+        with self._recovering() as arm:
+            arm.take_step(step)
 
     def plan_back_off(self) -> tuple[PlannedMove, ...]:
         """Plan backing off from where the arm was stopped: along the checked path, the cup to its station.
 
         Raises:
             MotionError: the arm was moved away from its planned path meanwhile.
+            MoveRefused: the controller does not allow that way.
+            RobotError: the arm does not respond, or could not move.
         """
         assert self._interrupted is not None, "requested only after a stop on the path"
         plan, moves, index = self._interrupted
@@ -173,6 +184,8 @@ class Pouring:
         if not gripper.is_closed or gripper.is_holding is False:
             back = tuple(replace(move, holds_cup=False) for move in back)  # it let go
         check_rejoining(self._cell, self._target, back)
+        motions = [(move.trajectory, move.label) for move in back]
+        refuse_restricted(self._arm.robot, motions, self._slowness)
         return back
 
     def take_up(self) -> str:
@@ -217,6 +230,15 @@ class Pouring:
             log.event("confirmed", "Backing off was confirmed.", plan=plan.digest, is_back_off=True)
             self._make(plan, moves, log)
         return folder
+
+    @contextmanager
+    def _recovering(self) -> Iterator[Robot | LoggedRecovery]:
+        """The arm; what is done to it is written down once there is a run."""
+        if self.last_run is None:
+            yield self._arm.robot
+            return
+        with RunLog(self.last_run) as log:
+            yield LoggedRecovery(self._arm.robot, log)
 
     def _make(self, plan: PourPlan, moves: tuple[PlannedMove, ...], log: RunLog) -> None:
         margins = plan_margins(self._cell, self._target, plan)

@@ -41,6 +41,17 @@ def look_around(connection: Connection) -> None:
     connection.send((os.environ.get("FROM_PARENT"), sys.stdin.read()))
 
 
+def hold_the_interpreter(connection: Connection, seconds: int) -> None:
+    connection.send(os.getpid())
+    ctypes.PyDLL(None).sleep(seconds)
+
+
+def have_a_busy_child(connection: Connection) -> None:
+    own = ChildProcess(hold_the_interpreter, 60, name="grandchild")
+    connection.send(own.connection.recv())
+    connection.recv()
+
+
 def have_a_child(connection: Connection) -> None:
     own = ChildProcess(sleep, 60.0, name="grandchild")
     connection.send(own.connection.recv())
@@ -123,6 +134,15 @@ def test_children_and_theirs_end_with_the_parent_however_it_ends(tmp_path, then:
             parent.kill()
         parent.wait(LIMIT_S)
     assert all(is_gone(pid) for pid in family)
+
+
+def test_one_in_a_library_that_holds_the_interpreter_ends_with_a_killed_parent() -> None:
+    child = ChildProcess(have_a_busy_child, name="parent")
+    grandchild = child.connection.recv()
+    time.sleep(1.0)  # so that it is in the library, most likely; elsewhere it ends, too
+    assert psutil.pid_exists(grandchild)
+    child.kill()
+    assert is_gone(grandchild)
 
 
 def test_only_what_is_silenced_is_dropped(capfd) -> None:

@@ -146,6 +146,11 @@ class WorkerLink:
         """Of the worker."""
         return self._process.pid
 
+    @property
+    def is_lost(self) -> bool:
+        """Whether it was given up."""
+        return self._loss is not None
+
     def state(self) -> AnyArray:
         """Return the newest state of `FIELDS`.
 

@@ -15,21 +15,18 @@ import numpy.typing as npt
 
 from core.geometry import FloatArray
 from core.motion.arm_models import ArmModel
+from core.motion.kinematics import flange_pose
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
-from hardware.errors import (
-    RobotError,
-    RobotLost,
-    RobotStopped,
-)
+from hardware.errors import RobotError, RobotLost, RobotStopped
 from hardware.grippers.robotiq_line import RobotiqAddress
 from hardware.interfaces import Kinematics, ReadyStep, RobotState
 from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
 from hardware.robots.ur.asking import (
-    DASHBOARD_STOP_S,
     end_program_after,
     refuse_beyond_safety,
+    stop_program,
     switch_tool_output,
 )
 from hardware.robots.ur.checks import (
@@ -206,7 +203,7 @@ class UR5Robot:
             why = str(error)
         _log.warning("The %s was stopped through its dashboard: %s", self.name, why)
         try:
-            connection.dashboard.stop(DASHBOARD_STOP_S)
+            stop_program(connection.dashboard, connection.worker.is_lost)
         except RobotLost as error:
             raise RobotLost(
                 f"The {self.name} cannot be reached for a stop ({error}); press the emergency stop if "
@@ -294,7 +291,9 @@ class UR5Robot:
         Raises:
             RobotError: one does not, or does not answer.
         """
-        refuse_beyond_safety(self._connected().worker, self.joint_limits, self.name, trajectory, label)
+        T_base_tool = flange_pose(self.kinematics.model, trajectory.joints_rad) @ self._T_flange_tool
+        worker, limits, tool_m = self._connected().worker, self.joint_limits, T_base_tool[:, :3, 3]
+        refuse_beyond_safety(worker, limits, self.name, trajectory, label, tool_m)
 
     def _connect(self) -> None:
         probe(self._address)

@@ -44,6 +44,7 @@ class Arm:
         stuck: joints (0 to 5) that do not follow.
         safe_rad: (2, 6) the lowest and highest angles that the safety system allows.
         safe_speeds_rad_s: (6,) the highest speeds that it allows.
+        safe_planes: normals (3,), and how far along them the tool may come, in metres.
     """
 
     def __init__(self, model: ArmModel, joints_rad: npt.ArrayLike) -> None:
@@ -58,6 +59,7 @@ class Arm:
         self.is_held = False
         self.stuck: set[int] = set()
         self.safe_rad = np.array([model.lower_rad, model.upper_rad])
+        self.safe_planes: list[tuple[FloatArray, float]] = []
         self.safe_speeds_rad_s = np.array(model.speed_limits_rad_s)
         self._pace = 1.0
         self._motion: Motion | None = None
@@ -82,7 +84,11 @@ class Arm:
     def is_safe(self, joints_rad: npt.ArrayLike) -> bool:
         """Whether the safety system allows a configuration (6,)."""
         low, high = self.safe_rad
-        return bool(((joints_rad >= low) & (joints_rad <= high)).all())
+        is_within = bool(((joints_rad >= low) & (joints_rad <= high)).all())
+        if not self.safe_planes or not is_within:
+            return is_within
+        tool_m = (flange_pose(self.model, joints_rad) @ self.T_flange_tcp)[:3, 3]
+        return all(normal @ tool_m <= offset_m for normal, offset_m in self.safe_planes)
 
     @property
     def is_paused(self) -> bool:

@@ -23,6 +23,7 @@
 | `jump JOINT RAD` | a joint (1 to 6) is elsewhere at once |
 | `limit JOINT LOW HIGH`, `no limits` | the safety system's, in rad; as the arm's own |
 | `fastest JOINT SPEED` | the safety system's, in rad/s; `no limits` as well |
+| `plane X Y Z M` | the safety system's: the tool comes no farther than M metres along (X, Y, Z); the same |
 | `force N` | something pushes at the tool |
 | `dashboard delay SECONDS` | the dashboard hears every line so late |
 | `hand empty`, `hand full` | nothing (any more) between a Robotiq gripper's fingers; something |
@@ -60,7 +61,7 @@ from hardware.simulation.ur_controller.robotiq import OBJECT_M, RobotiqHand
 _KILLED = 9
 _NEWEST = 200
 _OTHER_CLIENT = object()
-_SIGNED = ("calibration", "jump", "limit")
+_SIGNED = ("calibration", "jump", "limit", "plane")
 
 
 class FaultRefused(Exception):
@@ -134,6 +135,7 @@ class FaultInjector:
             "jump": self._jump,
             "limit": self._limit,
             "fastest": self._limit_speed,
+            "plane": self._bound,
             "force": lambda numbers: setattr(c, "tool_force_n", _one(numbers)),
             "hand fault": lambda numbers: setattr(self._hand, "fault", int(_one(numbers))),
             "pace": self._pace,
@@ -269,9 +271,15 @@ class FaultInjector:
         if not numbers:
             arm.safe_rad = np.array([arm.model.lower_rad, arm.model.upper_rad])
             arm.safe_speeds_rad_s = np.array(arm.model.speed_limits_rad_s)
+            arm.safe_planes = []
             return
         _must(len(numbers) == 3 and numbers[0] in range(1, 7), "a joint from 1 to 6, and two angles")
         arm.safe_rad[:, int(numbers[0]) - 1] = numbers[1:]
+
+    def _bound(self, numbers: list[float]) -> None:
+        _must(len(numbers) == 4 and any(numbers[:3]), "a normal, and how far along it, in metres")
+        normal = np.array(numbers[:3])
+        self._controller.arm.safe_planes.append((normal / np.linalg.norm(normal), numbers[3]))
 
     def _limit_speed(self, numbers: list[float]) -> None:
         _must(len(numbers) == 2 and numbers[0] in range(1, 7), "a joint from 1 to 6, and a speed")

@@ -14,7 +14,7 @@ from core.session.cups import Cup
 from core.session.pour_runs import next_run_folder
 from hardware.cell import read_cell
 from hardware.cell.scene import pour_cell
-from hardware.errors import RobotError
+from hardware.errors import MoveRefused, RobotError, RobotNotReady
 from hardware.pouring.run_log import RunLog
 
 RUN = Path("0002")
@@ -30,6 +30,7 @@ class StoppedOnce:
     gripper = "gripper"
     known = ""
     is_off_its_path = False
+    no_way_back: RobotError | None = None
 
     def __init__(self, stopped_by: Exception, asked: list[str]) -> None:
         self._errors = [stopped_by]
@@ -55,6 +56,9 @@ class StoppedOnce:
     def plan_back_off(self):
         if self.is_off_its_path:
             raise MotionError("The arm is 12 degrees off its planned path.")
+        error, self.no_way_back = self.no_way_back, None
+        if error is not None:
+            raise error
         return ()
 
     def take_up(self):
@@ -149,6 +153,25 @@ def test_an_arm_off_its_path_lets_go_where_it_is_and_the_next_plan_begins_there(
     stopped.is_off_its_path = True
     assert pour_cup(stopped, Scripted(asked), "UR5", CUP) == RUN
     recovery = ["recover?", "again?", "recover", "open?", "let go"]
+    assert asked == ["plan", "pour?", *recovery, "plan", "pour?", "pour"]
+
+
+@pytest.mark.parametrize(
+    ("error", "follows"),
+    [
+        (
+            RobotNotReady("The speed slider is at 0."),
+            ["recover?", "recover", "back off?", "back off", "home"],
+        ),
+        (MoveRefused("The base joint would be at 90 degrees."), ["open?", "let go"]),
+    ],
+)
+def test_an_arm_that_cannot_go_back_is_seen_to_and_one_that_may_not_lets_go(error, follows):
+    asked: list[str] = []
+    stopped = StoppedOnce(RobotError("A protective stop."), asked)
+    stopped.no_way_back = error
+    assert pour_cup(stopped, Scripted(asked), "UR5", CUP) == RUN
+    recovery = ["recover?", "again?", "recover", *follows]
     assert asked == ["plan", "pour?", *recovery, "plan", "pour?", "pour"]
 
 

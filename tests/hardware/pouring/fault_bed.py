@@ -203,7 +203,7 @@ class Bed:
                 pending = self.rig.arm.robot.pending_step()
                 if pending is None:
                     raise
-                self.rig.arm.robot.take_step(pending[0])
+                stopped.take_step(pending[0])
         stopped.recover()
 
     def _stopped_in(self, phase: str) -> None:

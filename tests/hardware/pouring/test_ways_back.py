@@ -14,7 +14,7 @@ from core.session.pour_runs import PourRun
 from hardware.cell import CellSettings
 from hardware.cell.scene import pour_cell
 from hardware.driving import slowness
-from hardware.errors import MoveRefused, RobotError, RobotStopped, TrackingLost
+from hardware.errors import MoveRefused, RobotError, RobotNotReady, RobotStopped, TrackingLost
 from hardware.pouring.pouring import Pouring
 from tests.awake import within
 from tests.hardware.pouring.rig import Rig, a_target, quick_cell
@@ -175,6 +175,46 @@ def test_a_plan_beyond_the_safety_limits_is_refused_before_anything_moves(rig):
         rig.controller.command("no limits")
     rig.pouring.recover()
     pours(rig)
+
+
+def test_a_way_back_that_the_controller_does_not_allow_is_refused_before_it_is_confirmed(rig):
+    stopped_in(rig, "carry")
+    here, station = rig.joints_rad[0], rig.pouring.interrupted_plan.moves[0].trajectory.end_rad[0]
+    halfway = (here + station) / 2
+    low, high = (halfway, here + 1) if station < here else (here - 1, halfway)
+    rig.controller.command(f"limit 1 {low} {high}")
+    try:
+        rig.pouring.recover()  # what is configured is read on connecting
+        with pytest.raises(MoveRefused, match=r"the base joint would be at -?\d+ degrees"):
+            rig.pouring.plan_back_off()
+        rig.controller.command("no limits")
+        rig.controller.command("slider 0")
+        rig.pouring.recover()
+        wait_until(lambda: rig.arm.robot.state().speed_scaling == 0)
+        with pytest.raises(RobotNotReady, match="speed slider is at 0"):
+            rig.pouring.plan_back_off()
+    finally:
+        rig.controller.command("no limits")
+        rig.controller.command("slider 1")
+    wait_until(lambda: rig.arm.robot.state().speed_scaling == 1)
+    rig.pouring.back_off(rig.pouring.plan_back_off())
+    assert rig.is_home
+
+
+def test_every_step_of_a_recovery_is_in_the_log(rig):
+    thread = rig.pour_until("carry", 0.5)
+    rig.controller.command("safety fault")
+    thread.join(HANG_S)
+    with pytest.raises(RobotError):
+        rig.pouring.recover()
+    step, _ = rig.arm.robot.pending_step()
+    rig.pouring.take_step(step)
+    rig.pouring.recover()
+    events = PourRun.load(rig.pouring.last_run).events
+    assert [event["kind"] for event in events[-4:]] == ["stopped", "not ready", "step", "recovered"]
+    assert events[-2]["step"] == "RESTART_SAFETY"
+    rig.pouring.back_off(rig.pouring.plan_back_off())
+    assert rig.is_home
 
 
 @pytest.mark.parametrize(

@@ -282,6 +282,26 @@ def test_the_safety_systems_joint_limits_are_asked_for(bench: Bench) -> None:
         bench.controller.command("no limits")
 
 
+@pytest.mark.parametrize("normal", [(0, 0, 1), (1, 0, 0), (0.6, -0.5, 0.7)])
+def test_a_safety_plane_is_asked_for_where_the_tool_comes_nearest_to_it(bench: Bench, normal: tuple) -> None:
+    """The joints' extremes are elsewhere: the tool goes out and back while they go on."""
+    angles = np.linspace(0, 2 * np.pi, 200)[:, None]
+    around = HOME + 0.2 * (np.sin(angles) * np.eye(6)[1] + np.cos(angles) * np.eye(6)[2])
+    motion = JointTrajectory.of_samples(around)
+    tool_m = (flange_pose(bench.robot.kinematics.model, around) @ T_FLANGE_TOOL)[:, :3, 3]
+    along_m = tool_m @ normal / np.linalg.norm(normal)
+    line = "plane {} {} {}".format(*normal)
+    try:
+        bench.controller.command(f"{line} {along_m.max() + 0.001}")
+        bench.robot.refuse_unsafe(motion, "turn")
+        bench.controller.command(f"{line} {along_m.max() - 0.02 * np.ptp(along_m) - 0.001}")
+        with pytest.raises(MoveRefused, match=r"In the move 'turn' .* planes under Installation"):
+            bench.robot.refuse_unsafe(motion, "turn")
+        assert bench.robot.stopped_by() is None
+    finally:
+        bench.controller.command("no limits")
+
+
 @pytest.mark.parametrize(
     ("line", "said"),
     [
