@@ -1,3 +1,5 @@
+import json
+
 import numpy as np
 import pytest
 
@@ -7,12 +9,12 @@ from app.operations.calibration.capture import CaptureObserver
 from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
 from app.operations.calibration.check import check_cell
 from app.operations.calibration.hand_eye import calibrate_cell
-from app.operations.calibration.provenance import read_looks, runs
+from app.operations.calibration.provenance import VIEWS, read_looks, runs
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
 from core.calibration.rig import exp_pose, log_pose
-from core.errors import Cancelled, InputError, StageError
+from core.errors import Cancelled, InputError, Remedy, StageError
 from core.geometry import invert_pose
 from core.progress import Reporter
 from hardware.cameras.simulated_board import SimulatedBoardCamera
@@ -96,15 +98,8 @@ def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
 @pytest.mark.system
 def test_an_interrupted_calibration_goes_on_with_what_was_taken():
     path = measured_cell(seed=1)
-    reporter = Reporter()
-
-    def stop_after_four(look, n_usable, image):
-        if n_usable == 4:
-            reporter.cancel()
-
     before = path.read_bytes()
-    with pytest.raises(Cancelled):
-        calibrated(path, reporter, observer=CaptureObserver(taken=stop_after_four))
+    interrupted_after(path, 4)
     assert path.read_bytes() == before
     n_new = []
     found = calibrated(
@@ -201,3 +196,35 @@ def test_damaged_records_are_named(cells):
     (cells / "bench.calibration" / "board.json").write_text('{"boards": [{"board": {"columns": 1}}]}')
     with pytest.raises(Exception, match=r"board\.json is damaged"):
         steps(path)
+
+
+@pytest.mark.parametrize(("fact", "device"), [("kinematics", "arm"), ("intrinsics", "camera")])
+def test_looks_of_another_arm_or_camera_are_not_gone_on_with(fact, device):
+    path = measured_cell(seed=1)
+    interrupted_after(path, 2)
+    [begun] = runs(path, step_names.HAND_EYE)
+    record = json.loads((begun / VIEWS).read_text())
+    (begun / VIEWS).write_text(json.dumps(record | {fact: "0badcafe"}))
+    before = path.read_bytes()
+    n_new = []
+    watching = CaptureObserver(taken=lambda look, n_usable, image: n_new.append(n_usable))
+    for _ in range(2):  # a refusal does not make them forgotten
+        with pytest.raises(StageError, match=f"of another {device} than is connected") as refusal:
+            calibrated(path, observer=watching)
+        assert refusal.value.remedy is Remedy.RESTART_CALIBRATION
+    assert n_new == [] and path.read_bytes() == before
+    assert len(read_looks(begun)[1]) >= 2, "they are kept"
+    interrupted_after(path, 1, is_restarted=True)
+    assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) < len(record["views"]), "left aside"
+
+
+def interrupted_after(path, n_usable, **options):
+    """Calibrate until there are so many usable looks."""
+    reporter = Reporter()
+
+    def stop(_look, n_now, _image):
+        if n_now == n_usable:
+            reporter.cancel()
+
+    with pytest.raises(Cancelled):
+        calibrated(path, reporter, observer=CaptureObserver(taken=stop), **options)

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gui.pages.cell.crop_form import CropForm
 from app.gui.pages.cell.cup_form import CupForm
 from app.gui.pages.cell.step_list import StepList
 from app.gui.pages.layouts import row_of
@@ -188,6 +189,7 @@ class StepOptions(QStackedWidget):
     Signals: `print_wanted` when the board is to be printed.
 
     Attributes:
+        crop: the box that holds the object.
         cup: where it stands, and how large it is.
     """
 
@@ -206,7 +208,10 @@ class StepOptions(QStackedWidget):
         self._add("", QFormLayout())
         self._add(step_names.BOARD, self._board_form())
         self._add(step_names.HAND_EYE, _form(self.tr("Views"), self._n_views))
-        self._add(step_names.TABLE, _form(self.tr("Thickness of the board"), self._thickness))
+        self.crop = CropForm()
+        table = _form(self.tr("Thickness of the board"), self._thickness)
+        table.addRow(self.crop)
+        self._add(step_names.TABLE, table)
         self.cup = CupForm()
         cup = QFormLayout()
         cup.addRow(self.cup)
