@@ -6,19 +6,21 @@ import pytest
 from app.operations.calibration import step_names
 from app.operations.calibration.camera_error import camera_error
 from app.operations.calibration.capture import CaptureObserver
-from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
+from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye, write_views
 from app.operations.calibration.check import check_cell
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import VIEWS, read_looks, runs
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
+from core.calibration.collecting import Collection
 from core.calibration.rig import exp_pose, log_pose
 from core.errors import Cancelled, InputError, Remedy, StageError
 from core.geometry import invert_pose
 from core.progress import Reporter
 from hardware.cameras.simulated_board import SimulatedBoardCamera
 from hardware.cell import SIMULATED_CELL, read_cell
+from hardware.robots.joint_motion import JointMotion
 
 N_VIEWS = 10
 
@@ -228,3 +230,52 @@ def interrupted_after(path, n_usable, **options):
 
     with pytest.raises(Cancelled):
         calibrated(path, reporter, observer=CaptureObserver(taken=stop), **options)
+
+
+def test_a_board_that_is_not_there_is_said_and_the_file_stays(monkeypatch):
+    path = measured_cell(seed=1)
+    write_views(path, read_cell(path).scan.views_rad[:2])
+    before = path.read_bytes()
+    plain = SimulatedBoardCamera.__init__
+
+    def without_board(camera, *words):
+        plain(camera, *words)
+        camera.T_base_board = camera.lying(np.array([3.0, 3.0, 0.0]), 0.0)
+
+    monkeypatch.setattr(SimulatedBoardCamera, "__init__", without_board)
+    with pytest.raises(StageError, match="in sight from none of the scan's views. No board"):
+        calibrated(path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.system
+def test_an_arm_that_is_pushed_during_an_image_costs_that_look_alone(monkeypatch):
+    path = measured_cell(seed=1)
+    plain = SimulatedBoardCamera.capture
+
+    def pushed_once(camera):
+        image = plain(camera)
+        if camera._n_shots == 5:
+            pushed = camera._robot.state().joints_rad[None] + 0.001
+            camera._robot._begin(JointMotion(pushed, 1.0, 1.0))
+        return image
+
+    monkeypatch.setattr(SimulatedBoardCamera, "capture", pushed_once)
+    found = calibrated(path)
+    _, looks = read_looks(found.folder)
+    [refused] = [look for look in looks if "arm moved while the image was taken" in look.problem]
+    assert refused.view is None and found.n_views == N_VIEWS and found.n_refused >= 1
+
+
+def test_too_few_poses_are_refused_and_what_was_taken_is_gone_on_with(monkeypatch):
+    path = measured_cell(seed=1)
+    before = path.read_bytes()
+    with monkeypatch.context() as patch:
+        patch.setattr(Collection, "next_poses", lambda *_: ())
+        with pytest.raises(StageError, match="1 view of the board is too few; take at least 6"):
+            calibrated(path)
+    assert path.read_bytes() == before
+    n_kept = len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1])
+    assert n_kept >= 1
+    interrupted_after(path, 2)
+    assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) > n_kept
