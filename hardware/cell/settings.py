@@ -119,7 +119,9 @@ class RobotSettings(Group):
         try:
             _ = self.arm
         except MotionError as error:
-            raise ValueError(f"own_kinematics is of another arm: {error}") from error
+            raise ValueError(
+                f"own_kinematics is of no {self.model} ({error}); remove it, and calibrate the cell again"
+            ) from error
         return self
 
     @property

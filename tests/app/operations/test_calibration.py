@@ -3,6 +3,7 @@ import json
 import numpy as np
 import pytest
 
+from app.jobs.scan_work import planned_pose
 from app.operations.calibration import step_names
 from app.operations.calibration.camera_error import camera_error
 from app.operations.calibration.capture import CaptureObserver
@@ -17,10 +18,15 @@ from core.calibration.collecting import Collection
 from core.calibration.rig import exp_pose, log_pose
 from core.errors import Cancelled, InputError, Remedy, StageError
 from core.geometry import invert_pose
+from core.motion.arm_models import UR5
+from core.motion.factory_calibration import calibrated as calibrated_arm
 from core.progress import Reporter
 from hardware.cameras.simulated_board import SimulatedBoardCamera
 from hardware.cell import SIMULATED_CELL, read_cell
+from hardware.cell.scene import motion_scene, pour_cell
+from hardware.interfaces import Kinematics
 from hardware.robots.joint_motion import JointMotion
+from tests.core.motion.measured_arms import measured_arm
 
 N_VIEWS = 10
 
@@ -172,6 +178,29 @@ def test_another_hand_eye_pose_in_the_file_changes_nothing_else(tmp_path):
     assert comments(path)[-1] == comments(SIMULATED_CELL)[-1]
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_an_arms_own_kinematics_are_kept_in_the_file_and_used_everywhere(seed):
+    path = new_cell("bench", is_simulated=False, address="192.168.0.7")
+    measured = measured_arm(UR5, seed)  # offsets of hundreds of metres among them
+    own = calibrated_arm(UR5, measured)
+    settings = read_cell(path)
+    views = shown_views(settings)
+    write_hand_eye(path, settings.camera.pose, Kinematics(own, "0badcafe", measured))
+    settings = read_cell(path)
+    assert settings.robot.kinematics_checksum == "0badcafe"
+    for arm in (settings.robot.arm, motion_scene(settings).arm, pour_cell(settings).arm):
+        assert arm == own, "to the last digit"
+    apart_m = np.linalg.norm((shown_views(settings) - views)[:, :3, 3], axis=1)
+    assert 0.0005 < apart_m.max() < 0.03, "drawn where this arm brings the camera"
+    write_hand_eye(path, settings.camera.pose)
+    assert read_cell(path).robot.arm == UR5
+
+
+def shown_views(settings):
+    """Where a page draws the views of a scan."""
+    return np.array([planned_pose(settings, joints) for joints in settings.scan.views_rad])
+
+
 def test_a_file_that_is_no_cell_stays_as_it_is(tmp_path):
     path = tmp_path / "broken.toml"
     path.write_text("name = 'x'\n")
@@ -243,7 +272,7 @@ def test_a_board_that_is_not_there_is_said_and_the_file_stays(monkeypatch):
         camera.T_base_board = camera.lying(np.array([3.0, 3.0, 0.0]), 0.0)
 
     monkeypatch.setattr(SimulatedBoardCamera, "__init__", without_board)
-    with pytest.raises(StageError, match="in sight from none of the scan's views. No board"):
+    with pytest.raises(StageError, match=r"in sight from none of the scan's views\. No board"):
         calibrated(path)
     assert path.read_bytes() == before
 
