@@ -271,7 +271,7 @@ def _cup(cell_file: Path) -> Step:
 def _dry_run(cell_file: Path) -> Step:
     latest, settings = latest_result(cell_file, step_names.DRY_RUN), read_cell(cell_file)
     if latest is None:
-        return Step(step_names.DRY_RUN, StepState.OPEN, "let the arm go through a pour with an empty cup")
+        return Step(step_names.DRY_RUN, StepState.OPEN, "let the arm make a pour with an empty cup")
     folder, table = latest
     with reading(folder):
         time, said, is_same = str(table["time"]), str(table["said"]), table["for"] == reach_is_for(settings)

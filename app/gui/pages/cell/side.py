@@ -91,10 +91,13 @@ class CellSide(SidePanel):
 
     def show_step(self, title: str, what: str, figure: str) -> None:
         """Say what the chosen step is about."""
+        is_other = title != self._title.text()
         self._line.setVisible(bool(title))
         say(self._title, title)
         say(self._what, what)
         say(self._figure, figure)
+        if is_other and self.options.isVisibleTo(self):
+            self.reveal(self.options)
 
     def show_obstacle(self, text: str) -> None:
         """Say what keeps the step from being done."""

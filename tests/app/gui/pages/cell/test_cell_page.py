@@ -7,7 +7,7 @@ import signal
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLabel, QSpinBox
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QLabel, QSpinBox
 
 from app.gui.pages.cell.step_list import StepLine, StepRow
 from app.jobs.scan_events import ScanQuestion
@@ -265,3 +265,12 @@ def test_the_crop_box_is_typed_and_dragged_in_the_platforms_step_alone(qtbot, de
     settle(qtbot, desk, page)
     assert "crop box is empty" in said[0] and path.read_bytes() == kept
     assert high.value() == pytest.approx(300.0), "what was refused is not shown"
+
+
+@pytest.mark.parametrize("step", ["board", "table", "views", "cup"])
+def test_what_a_step_may_be_told_is_in_sight_once_it_is_chosen(qtbot, desk, page, step):
+    choose(qtbot, desk, page, new_cell("bench", is_simulated=True))
+    pick(qtbot, page, step)
+    qtbot.waitUntil(lambda: not page.side.options.visibleRegion().isEmpty())
+    told = page.side.options.currentWidget().findChildren(QAbstractSpinBox)[0]
+    qtbot.waitUntil(lambda: not told.visibleRegion().isEmpty())
