@@ -9,7 +9,7 @@ OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS
 TWO_AT_A_TIME = -n 2 --dist loadfile --no-loadscope-reorder
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye decision drift pour-plans pour-faults pour-soak fuzz kills scene-speed stop-latency window-start window-tour window-kills screenshots train-appearance own-kinematics window-load film clean
+.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye calibrated-scans calibration-choice decision drift pour-plans pour-faults pour-soak fuzz kills scene-speed stop-latency window-start window-tour window-kills screenshots train-appearance own-kinematics window-load film clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -97,6 +97,12 @@ hand-eye: setup
 
 decision: setup
 	.venv/bin/python -m tests.benchmarks.decision
+
+calibration-choice: setup
+	.venv/bin/python -m tests.benchmarks.calibration_choice
+
+calibrated-scans: setup
+	.venv/bin/python -m tests.benchmarks.calibrated_scans
 
 drift: setup
 	.venv/bin/python -m tests.benchmarks.drift

@@ -44,6 +44,8 @@ class Remedy(Enum):
     """Bring home what a pour left in the hand, or take it and open the gripper."""
     RESTART_SCAN = "restart the scan"
     """Discard the views that were taken, and scan anew."""
+    RESTART_CALIBRATION = "restart the calibration"
+    """Leave the looks of an interrupted calibration aside, and calibrate anew."""
 
 
 class PoursightError(Exception):

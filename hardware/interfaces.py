@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from core.geometry import FloatArray
 from core.motion.arm_models import ArmModel
+from core.motion.factory_calibration import MeasuredKinematics
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from core.scan.model import ColorImage, DepthImage, Intrinsics
@@ -110,11 +111,13 @@ class Kinematics:
     Attributes:
         model: by the arm's own calibration where that is known, else as published.
         checksum: of that calibration, as its controller has it; empty if it is not known.
+        measured: that calibration; none if it is not known.
         caution: what it costs that it is not known, and what to do; empty where it costs nothing.
     """
 
     model: ArmModel
     checksum: str = ""
+    measured: MeasuredKinematics | None = None
     caution: str = ""
 
 

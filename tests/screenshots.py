@@ -33,7 +33,7 @@ from app.operations.calibration.devices import examine_device
 from app.operations.calibration.dry_run import dry_run
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.reference import store_reference
-from app.operations.calibration.steps import enter_board
+from app.operations.calibration.steps import enter_board, steps
 from app.operations.calibration.table import measure_table
 from app.operations.calibration.views import choose_views
 from core.calibration.board import BoardSpec
@@ -120,7 +120,7 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
     window.ready.connect(lambda: ready.append(True))
     walk.wait(lambda: ready, "the window is ready", 60)
     _keep(walk, target / f"welcome-{theme}-{size[0]}.png")
-    _picture_cell(walk, target / f"cell-{theme}-{size[0]}.png")
+    _picture_cell(walk, target, f"{theme}-{size[0]}")
     for name in OBJECTS:
         window.desk.open_session(library / name)
         for key in (key for key in (*WORK, *OTHERS) if key != "cell"):
@@ -163,13 +163,16 @@ def _make_cell() -> None:
     dry_run(path, Reporter(), None)
 
 
-def _picture_cell(walk: Walk, path: Path) -> None:
-    """The Cell page, which depends on no session."""
+def _picture_cell(walk: Walk, target: Path, how: str) -> None:
+    """The Cell page, which depends on no session: all steps done, and each of them chosen."""
     cell = walk.window.desk.cell
     cell.choose(known_cells()[0])
     walk.window.show_page("cell")
     walk.wait(lambda: cell.path is not None, "the cell is read", 20)
-    _keep(walk, path)
+    _keep(walk, target / f"cell-{how}.png")
+    for step in steps(known_cells()[0]):
+        walk.click(f"step_{step.name}")
+        _keep(walk, target / f"cell-{step.name}-{how}.png")
     cell.choose(None)
     walk.wait(lambda: cell.path is None, "the shipped cell is read", 20)
 

@@ -131,6 +131,23 @@ def table(
 
 
 @cell.command()
+def crop(
+    name: NameArgument,
+    from_mm: Annotated[
+        tuple[float, float, float],
+        typer.Option("--from-mm", metavar="X Y Z", help="Lower corner, in the arm's base frame."),
+    ],
+    to_mm: Annotated[
+        tuple[float, float, float], typer.Option("--to-mm", metavar="X Y Z", help="Upper corner.")
+    ],
+) -> None:
+    """Enter the box that holds the object: what is outside is no part of it."""
+    from app.cli import cell_commands
+
+    cell_commands.crop(name, from_mm, to_mm)
+
+
+@cell.command()
 def views(
     name: NameArgument,
     n: Annotated[int, typer.Option("--n", min=6, max=200, help="How many views at most.")] = 24,

@@ -18,6 +18,7 @@ from app.operations.calibration import reference as referring
 from app.operations.calibration import table as measuring
 from app.operations.calibration import views as choosing_views
 from app.operations.calibration.capture import CaptureObserver
+from app.operations.calibration.crop import enter_crop_box
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
 from core.errors import Cancelled, InputError
@@ -151,6 +152,13 @@ def views(name: str, n_views: int) -> None:
     with TerminalReporter() as terminal:
         print(choosing_views.choose_views(path, terminal, n_views).sentence)
     print(f"Next: poursight cell cup {name}")
+
+
+def crop(name: str, from_mm: tuple[float, float, float], to_mm: tuple[float, float, float]) -> None:
+    """Enter a crop box."""
+    path = _path(name)
+    enter_crop_box(path, np.array(from_mm) / MM, np.array(to_mm) / MM)
+    print(f"The crop box in {path} is changed.\nNext: poursight cell views {name}")
 
 
 def reference(name: str, is_confirmed: bool) -> None:

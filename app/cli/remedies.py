@@ -19,6 +19,7 @@ REMEDIES = {
     Remedy.OTHER_CELL: "Give another one with --cell FILE.",
     Remedy.EMPTY_HAND: "'poursight pour SESSION' of that pour asks what is in it, and brings a cup home.",
     Remedy.RESTART_SCAN: "Run the same command with --restart to discard them.",
+    Remedy.RESTART_CALIBRATION: "Run the same command with --restart to leave them aside.",
     Remedy.START_CLUSTER: "'poursight cluster' starts one and prints its address.",
     Remedy.POUR_ANYWAY: "Add --anyway to pour all the same.",
     Remedy.SCAN_THE_MESH: "'poursight scan --object MESH --session DIR' scans it in the simulated cell.",

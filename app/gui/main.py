@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import gc
 import os
 import signal
@@ -20,6 +21,8 @@ from core.errors import InputError
 COLLECT_EVERY_MS = 1000
 FIRST_PAINT_MS = 50
 """Imports in a thread hold the interpreter's lock: with them the first paint took up to twice as long."""
+_M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
+_LARGE_BYTES = 2**19
 _SCREEN_VARIABLES = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
 
 
@@ -37,10 +40,23 @@ def make_application() -> QApplication:
             "There is no screen (neither DISPLAY nor WAYLAND_DISPLAY is set); 'poursight demo' does the "
             "whole job without one."
         )
+    _give_back_large_memory()
     QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setOrganizationName("Poursight")
     QCoreApplication.setApplicationName("Poursight")
     return QApplication(sys.argv[:1])
+
+
+def _give_back_large_memory() -> None:
+    """Have the C library give large blocks back to the system as soon as they are free.
+
+    It learns from the first ones freed to keep the next, and pictures and models leave holes: after five rounds
+    through all pages 573 MB were 528. Source: mallopt(3), glibc alone has it.
+    """
+    with suppress(AttributeError, OSError):
+        library = ctypes.CDLL(None)
+        library.mallopt(_M_MMAP_THRESHOLD, _LARGE_BYTES)
+        library.mallopt(_M_TRIM_THRESHOLD, 2 * _LARGE_BYTES)
 
 
 def open_window(application: QApplication) -> MainWindow:

@@ -26,6 +26,9 @@ def remedy_words(remedy: Remedy | None) -> str:
         Remedy.POUR_ANYWAY: translate("Remedy", "Tick its box on the Robot page to pour all the same."),
         Remedy.EMPTY_HAND: translate("Remedy", "On the Robot page bring the cup home, or open the gripper."),
         Remedy.RESTART_SCAN: translate("Remedy", "Press Start over on the Scan page to discard them."),
+        Remedy.RESTART_CALIBRATION: translate(
+            "Remedy", "Press Start over on the Cell page to leave them aside."
+        ),
     }
     return "" if remedy is None else words[remedy]
 

@@ -274,9 +274,7 @@ class ScanReporter:
 
 def planned_pose(cell: CellSettings, joints_rad: Sequence[float]) -> FloatArray:
     """Return the pose `T_base_camera` (4, 4) of a cell's camera at joint angles (6,)."""
-    from hardware.cell.settings import ARMS
-
-    pose: FloatArray = flange_pose(ARMS[cell.robot.model], joints_rad) @ cell.camera.pose
+    pose: FloatArray = flange_pose(cell.robot.arm, joints_rad) @ cell.camera.pose
     return pose
 
 

@@ -15,7 +15,6 @@ from core.session.cups import cup_of_run
 from core.session.pour_runs import STATES_FILE, Outcome, pour_runs, write_outcome
 from hardware.cell import CellSettings
 from hardware.cell.scene import object_space
-from hardware.cell.settings import ARMS
 from hardware.pouring.pouring import PLAN_FOLDER
 from hardware.pouring.run_log import read_states
 from hardware.simulation.placing import place_on_platform, transform_mesh
@@ -37,7 +36,7 @@ def simulated_outcome(pipeline: Pipeline, settings: CellSettings, folder: Path) 
     with reading(folder / STATES_FILE):
         states = read_states(folder, {move.name for move in plan.moves if move.holds_cup})
     T_flange_cup = settings.gripper.grasp_pose @ plan.T_grasp_cup
-    path = driven_path(ARMS[settings.robot.model], states.times_s, states.joints_rad, T_flange_cup)
+    path = driven_path(settings.robot.arm, states.times_s, states.joints_rad, T_flange_cup)
     parameters, place = pipeline.poured_parameters(), settings.place
     mesh, remark = _true_mesh(pipeline, settings)
     session = pipeline.session.path

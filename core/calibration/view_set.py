@@ -53,8 +53,8 @@ def why_too_little(views: Sequence[BoardView], T_flange_camera: FloatArray) -> s
         T_flange_camera: (4, 4) a guess, or the fit: it names the axes.
     """
     if len(views) < FEWEST_VIEWS:
-        n = f"{len(views)} view{'' if len(views) == 1 else 's'}"
-        return f"{n} of the board are too few; take at least {FEWEST_VIEWS}, better 15 to 25."
+        n = "1 view of the board is" if len(views) == 1 else f"{len(views)} views of the board are"
+        return f"{n} too few; take at least {FEWEST_VIEWS}, better 15 to 25."
     found = diversity([view.T_base_flange for view in views], T_flange_camera)
     if found.grade is Grade.POOR:
         wanted = ", ".join(found.missing)

@@ -17,7 +17,7 @@ from hardware.cell.cell import open_cell
 from hardware.cell.devices import real_arm, real_camera, robotiq_address
 from hardware.cell.own_arm import why_other_arm
 from hardware.cell.scene import motion_scene
-from hardware.cell.settings import ARMS, CellSettings
+from hardware.cell.settings import CellSettings
 from hardware.grippers.robotiq_line import Contact, RobotiqLine, refuse_faulty
 from hardware.interfaces import Camera, Kinematics
 from hardware.modes import unreadiness
@@ -60,7 +60,7 @@ def examine_robot(settings: CellSettings) -> Finding:
     version = ".".join(map(str, arm.controller_version))
     modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}"
     agree = "are only known when it is connected" if seen.tool_offset is None else "agree"
-    said = f"{subject}, controller {version}, {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
+    said = f"{subject}, controller {version}; {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
     limits = "not read (compare them at its panel)" if arm.joint_limits is None else "read"
     said = f"{said}, {_kinematics_read(arm.kinematics)}, joint limits {limits}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
@@ -107,7 +107,7 @@ def examine_camera(settings: CellSettings) -> Finding:
         return Finding("camera", settings.camera.kind, str(error))
     share = float((image.depth_m > 0).mean())
     height, width = image.depth_m.shape
-    value = f"{camera.name}, {width} x {height}, depth in {share:.0%} of the pixels"
+    value = f"{camera.name}, {width} x {height}; depth in {share:.0%} of the pixels"
     if share == 0:
         return Finding("camera", value, "It gives no depth at all; check its projector and what it looks at.")
     return Finding("camera", *_with_plane(value, find_plane(image.depth_m, image.intrinsics)))
@@ -150,7 +150,7 @@ def _views(settings: CellSettings) -> Iterator[Finding]:
                 subject, what, f"The arm cannot stand there ({problem}); correct it in the cell file."
             )
             return
-    same = _same_views(flange_pose(ARMS[settings.robot.model], joints) @ settings.camera.pose)
+    same = _same_views(flange_pose(settings.robot.arm, joints) @ settings.camera.pose)
     if same:
         pairs = ", ".join(f"{a + 1} and {b + 1}" for a, b in same)
         yield Finding(subject, f"{len(joints)}", f"Views {pairs} are the same; replace one of each pair.")

@@ -10,7 +10,7 @@ from core.motion.clearance import MotionScene, Obstacle, axis_aligned_obstacle
 from core.motion.pour.cell import GRIPPER, PourCell
 from core.motion.views import ViewTask
 from core.scan.model import CropBox, crop_box
-from hardware.cell.settings import ARMS, CellSettings
+from hardware.cell.settings import CellSettings
 
 OBJECT_BOX = "object's box"
 _TABLE_REACH_M = 1.5
@@ -22,7 +22,7 @@ end of the upper arm."""
 
 def motion_scene(cell: CellSettings, object_box: CropBox | None = None) -> MotionScene:
     """Return arm, tools and obstacles; the object may fill its whole box, by default the crop box."""
-    arm = ARMS[cell.robot.model]
+    arm = cell.robot.arm
     box = object_box or cell.place.crop_box
     whole_box = axis_aligned_obstacle(OBJECT_BOX, box.min_m, box.max_m)
     return MotionScene(arm, arm_shape(arm, _tools(cell)), _obstacles(cell, whole_box))
@@ -65,14 +65,14 @@ def view_task(cell: CellSettings, low_m: FloatArray, high_m: FloatArray) -> View
 
 def board_scene(cell: CellSettings) -> MotionScene:
     """Return arm, tools and obstacles around a flat board, in place of an object."""
-    arm = ARMS[cell.robot.model]
+    arm = cell.robot.arm
     return MotionScene(arm, arm_shape(arm, _tools(cell)), _obstacles(cell))
 
 
 def pour_cell(cell: CellSettings) -> PourCell:
     """Return what the planning of a pour must know, without the object: its true size is known by then."""
     return PourCell(
-        ARMS[cell.robot.model],
+        cell.robot.arm,
         _tools(cell),
         tuple(_obstacles(cell)),
         np.array(cell.robot.home_rad),

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from core.errors import MotionError
 from core.geometry import FloatArray
 from core.motion.arm_models import UR5, UR5E, ArmModel
 from core.motion.pour.cell import MotionSettings
@@ -25,6 +26,7 @@ from hardware.cell.gripper_settings import (
     Row,
     refuse_no_pose,
 )
+from hardware.cell.links import LinkSettings
 from hardware.simulation.depth_noise import DepthNoise
 from hardware.simulation.set_up import SetUp
 
@@ -101,6 +103,7 @@ class RobotSettings(Group):
         None, "Of the arm's own kinematics, with which the cell was calibrated; none: not known.",
         source=CELL, is_written=False,
     )  # fmt: skip
+    own_kinematics: LinkSettings | None = Field(None, exclude_if=lambda given: given is None)
     home_rad: Joints = choice(..., "Where the arm rests, clear of everything.", source=CELL)
     joint_speed_rad_s: float = quantity(
         0.8, "Speed of the fastest joint while scanning.", unit="rad/s", source=OURS, low=0.01, high=pi
@@ -110,10 +113,22 @@ class RobotSettings(Group):
     )
 
     @model_validator(mode="after")
-    def _has_address(self) -> RobotSettings:
+    def _fits(self) -> RobotSettings:
         if self.kind == "ur5" and not self.address:
             raise ValueError("a ur5 robot needs 'address', such as \"192.168.0.10\"")
+        try:
+            _ = self.arm
+        except MotionError as error:
+            raise ValueError(
+                f"own_kinematics is of no {self.model} ({error}); remove it, and calibrate the cell again"
+            ) from error
         return self
+
+    @property
+    def arm(self) -> ArmModel:
+        """By the arm's own kinematics where the file has them, else as published."""
+        published = ARMS[self.model]
+        return published if self.own_kinematics is None else self.own_kinematics.of(published)
 
     @property
     def is_real(self) -> bool:

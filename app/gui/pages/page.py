@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, QTimer
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QScrollArea, QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
@@ -102,7 +102,7 @@ class SidePanel(QFrame):
         self.body = QVBoxLayout(inside)
         self.body.setContentsMargins(2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX, GRID_PX)
         self.body.setSpacing(GRID_PX)
-        area = _SideArea()
+        self._area = area = _SideArea()
         area.setFrameShape(QFrame.Shape.NoFrame)
         area.setWidgetResizable(True)
         area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
@@ -121,6 +121,10 @@ class SidePanel(QFrame):
         whole.setSpacing(0)
         whole.addWidget(area, 1)
         whole.addLayout(self._buttons)
+
+    def reveal(self, widget: QWidget) -> None:
+        """Scroll to where a control can be seen, once it has its place."""
+        QTimer.singleShot(0, self, lambda: self._area.ensureWidgetVisible(widget, 0, GRID_PX))
 
     @override
     def sizeHint(self) -> QSize:

@@ -16,8 +16,10 @@ from core.errors import InputError
 from core.files import make_folder, read_content, reason, write_whole
 from core.geometry import FloatArray
 from core.session import explained
+from hardware.cell.links import LinkSettings
 from hardware.cell.reading import CELL_FOLDER, SIMULATED_CELL, read_cell
 from hardware.cell.settings import CellSettings
+from hardware.interfaces import Kinematics
 from hardware.simulation.set_up import random_camera_pose
 
 CELLS_VARIABLE = "POURSIGHT_CELLS"
@@ -94,13 +96,13 @@ def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None =
     return path
 
 
-def write_hand_eye(path: Path, T_flange_camera: FloatArray, kinematics: str = "") -> None:
+def write_hand_eye(path: Path, T_flange_camera: FloatArray, kinematics: Kinematics | None = None) -> None:
     """Put another hand-eye pose (4, 4) into a cell's file; all else in it stays, comments too.
 
     Args:
         path: of the file.
         T_flange_camera: the pose.
-        kinematics: checksum of the arm's own kinematics by which it was found; empty: not known.
+        kinematics: of the arm by which it was found; none, or without a checksum: not known.
 
     Raises:
         InputError: the file cannot be read, or would be no cell any more; it stays as it was.
@@ -110,10 +112,14 @@ def write_hand_eye(path: Path, T_flange_camera: FloatArray, kinematics: str = ""
     def change(document: tomlkit.TOMLDocument) -> None:
         _table(document, "camera")["T_flange_camera"] = _matrix(T_flange_camera)
         robot = _table(document, "robot")
-        if kinematics:
-            robot["kinematics_checksum"] = kinematics
-        else:
-            robot.pop("kinematics_checksum", None)
+        for name in ("kinematics_checksum", "own_kinematics"):
+            robot.pop(name, None)
+        if kinematics is not None and kinematics.checksum and kinematics.measured is not None:
+            robot["kinematics_checksum"] = kinematics.checksum
+            links = tomlkit.table()
+            for name in LinkSettings.model_fields:
+                links[name] = list(getattr(kinematics.measured, name))
+            robot["own_kinematics"] = links
 
     _changed(path, change)
 

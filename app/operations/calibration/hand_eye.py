@@ -18,10 +18,18 @@ from app.operations.calibration.capture import (
     take_rounds,
 )
 from app.operations.calibration.cell_file import write_hand_eye
-from app.operations.calibration.provenance import RESULT, VIEWS, now, read_boards, read_looks, runs, versions
+from app.operations.calibration.provenance import (
+    RESULT,
+    interrupted_run,
+    now,
+    read_boards,
+    read_looks,
+    versions,
+)
 from app.operations.scan_run import ScanOperator
 from core.calibration.accuracy import Bounds, HeldOut, bounds, hold_out
 from core.calibration.board import BoardSpec
+from core.calibration.collecting import Look
 from core.calibration.diversity import diversity
 from core.calibration.hand_eye import HandEyeFit, calibrate_hand_eye
 from core.calibration.noise import EXPECTED
@@ -35,12 +43,14 @@ from core.motion.kinematics import flange_pose
 from core.progress import Reporter
 from core.session import explained
 from hardware.cell.reading import read_cell
-from hardware.cell.settings import ARMS, CellSettings
+from hardware.cell.settings import CellSettings
 
 MOST_POURING_M = 0.003
 """A constant error of 3 mm and 1 degree survives reconstruction, one of 5 mm and 2 degrees does not."""
 MOST_RATIO = 2.0
 SAME_POSE = 1e-6
+_DEVICES = {"kinematics": "arm", "intrinsics": "camera"}
+"""What tells one device from another, in the facts that are kept with the looks."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +115,9 @@ def calibrate_cell(
         n_views,
     ) as capture:
         if before is not None:
-            capture.adopt(before)
+            known, looks = before
+            _refuse_other_devices(known, capture.facts)
+            capture.adopt(looks)
         if not any(look.view is not None for look in capture.collection.looks):
             find_board(capture)
         take_rounds(capture)
@@ -115,7 +127,9 @@ def calibrate_cell(
 def _of_any_arm(settings: CellSettings) -> CellSettings:
     """It is being calibrated: with which arm it was before does not matter."""
     return settings.model_copy(
-        update={"robot": settings.robot.model_copy(update={"kinematics_checksum": None})}
+        update={
+            "robot": settings.robot.model_copy(update={"kinematics_checksum": None, "own_kinematics": None})
+        }
     )
 
 
@@ -132,8 +146,9 @@ def conclude(cell_file: Path, settings: CellSettings, capture: Capture) -> Calib
     fit = calibrate_hand_eye(views, board, capture.collection.intrinsics)
     problem = why_wrong(fit, views, board)
     if problem is not None:
-        raise StageError(problem, Remedy.RESTART_SCAN)
-    scan = flange_pose(ARMS[settings.robot.model], np.array(settings.scan.views_rad))
+        raise StageError(problem, Remedy.RESTART_CALIBRATION)
+    kinematics = capture.cell.robot.kinematics
+    scan = flange_pose(kinematics.model, np.array(settings.scan.views_rad))
     stated = bounds(fit, scan, settings.place.platform_center_m)
     held_out = hold_out(fit, views, board)
     rotations = diversity([view.T_base_flange for view in views], fit.T_flange_camera)
@@ -146,7 +161,7 @@ def conclude(cell_file: Path, settings: CellSettings, capture: Capture) -> Calib
     table = _result_table(found, fit, settings.camera.pose, board) | capture.facts
     with explained(capture.folder):
         write_json(capture.folder / RESULT, table)
-    write_hand_eye(cell_file, fit.T_flange_camera, capture.facts["kinematics"])
+    write_hand_eye(cell_file, fit.T_flange_camera, kinematics)
     return found
 
 
@@ -171,14 +186,27 @@ def entered_board(cell_file: Path) -> BoardSpec:
     return entries[-1].board
 
 
-def _interrupted(cell_file: Path, facts: dict[str, Any]) -> list[Any] | None:
-    """The looks of the newest run, if it did not come to a result and was about the same."""
-    folders = runs(cell_file, step_names.HAND_EYE)
-    if not folders or (folders[-1] / RESULT).exists() or not (folders[-1] / VIEWS).is_file():
+def _interrupted(cell_file: Path, facts: dict[str, Any]) -> tuple[dict[str, Any], list[Look]] | None:
+    """Facts and looks of the newest run, if it did not come to a result and was about the same."""
+    folder = interrupted_run(cell_file, step_names.HAND_EYE)
+    if folder is None:
         return None
-    known, looks = read_looks(folders[-1])
+    known, looks = read_looks(folder)
     is_same_run = all(known.get(name) == value for name, value in facts.items())
-    return looks if is_same_run else None
+    return (known, looks) if is_same_run else None
+
+
+def _refuse_other_devices(known: dict[str, Any], facts: dict[str, Any]) -> None:
+    """Looks by another arm or through another camera say nothing of where this one hangs at that one."""
+    for name, device in _DEVICES.items():
+        before = known.get(name, facts[name])
+        if before != facts[name]:
+            raise StageError(
+                f"What an interrupted calibration saw is of another {device} than is connected now ({name} "
+                f"{before or 'not known'}, now {facts[name] or 'not known'}); connect that one again, or "
+                "begin anew.",
+                Remedy.RESTART_CALIBRATION,
+            )
 
 
 def _refuse_poor(stated: Bounds, held_out: HeldOut, rotations: str) -> None:
@@ -191,7 +219,7 @@ def _refuse_poor(stated: Bounds, held_out: HeldOut, rotations: str) -> None:
         raise StageError(
             f"Views that the fit did not see are {held_out.ratio:.1f} times as far off as they should be "
             f"({held_out.position_m * 1000:.1f} mm); fix board and camera, and take the views anew.",
-            Remedy.RESTART_SCAN,
+            Remedy.RESTART_CALIBRATION,
         )
 
 

@@ -117,6 +117,12 @@ def new_run(cell: Path, step: str) -> Path:
     return folder
 
 
+def interrupted_run(cell: Path, step: str) -> Path | None:
+    """Return the newest run of a step that looked at the board, if it came to no result; else none."""
+    looked = [folder for folder in runs(cell, step) if (folder / VIEWS).is_file()]
+    return looked[-1] if looked and not (looked[-1] / RESULT).exists() else None
+
+
 def latest_result(cell: Path, step: str) -> tuple[Path, dict[str, Any]] | None:
     """Return the newest finished run of a step and its result, whose poses are arrays (4, 4).
 

@@ -49,7 +49,7 @@ class Step:
     Attributes:
         name: of the step, as the commands have it.
         state: how far it is.
-        figure: what came of it, or what is to be done.
+        figure: what came of it, or what is to be done; of parts joined by "; " the first says the most.
         time: when it was done; empty if it was not.
     """
 
@@ -138,7 +138,7 @@ def _hand_eye(cell_file: Path) -> Step:
     with reading(folder):
         stated, held_out = table["bounds"], table["held_out"]
         figure = (
-            f"{stated['pouring_m'] * 1000:.2f} mm at the place of pouring (95 %), camera to "
+            f"{stated['pouring_m'] * 1000:.2f} mm at the place of pouring (95 %); camera to "
             f"{stated['position_m'] * 1000:.2f} mm and {np.degrees(stated['angle_rad']):.3f} degrees; "
             f"{table['n_views']} views, unseen ones to {held_out['position_m'] * 1000:.2f} mm"
         )
@@ -165,7 +165,7 @@ def _check(cell_file: Path) -> Step:
         agreement = table["agreement"]
         figure = (
             f"{table['n_views']} views agree to {agreement['rms_m'] * 1000:.2f} mm (worst two "
-            f"{agreement['worst_m'] * 1000:.2f} mm), {agreement['ratio']:.1f} times what is expected"
+            f"{agreement['worst_m'] * 1000:.2f} mm); {agreement['ratio']:.1f} times what is expected"
         )
         time, hand_eye, is_good = str(table["time"]), table["hand_eye"], agreement["ratio"] <= MOST_RATIO
     if not _is_by_present_camera(cell_file, hand_eye):
@@ -187,7 +187,7 @@ def _table(cell_file: Path) -> Step:
     with reading(folder):
         x, y, z = (1000 * value for value in table["center_m"])
         figure = (
-            f"the platform's top is {z:.1f} mm above the base, its middle at ({x:.0f}, {y:.0f}) mm, "
+            f"the platform's top is {z:.1f} mm above the base; its middle at ({x:.0f}, {y:.0f}) mm, "
             f"tilted by {np.degrees(table['tilt_rad']):.2f} degrees"
         )
         time, hand_eye, after = str(table["time"]), table["hand_eye"], table["after"]
@@ -241,7 +241,7 @@ def _reference(cell_file: Path) -> Step:
         return Step(
             step_names.REFERENCE, StepState.STALE, "the camera was calibrated anew since it was stored", time
         )
-    said = f"{n_corners} corners of the board, looked at again when a scan begins"
+    said = f"{n_corners} corners of the board; looked at again when a scan begins"
     drifts = latest_result(cell_file, step_names.DRIFT)
     if drifts is not None:
         with reading(drifts[0]):
@@ -271,7 +271,7 @@ def _cup(cell_file: Path) -> Step:
 def _dry_run(cell_file: Path) -> Step:
     latest, settings = latest_result(cell_file, step_names.DRY_RUN), read_cell(cell_file)
     if latest is None:
-        return Step(step_names.DRY_RUN, StepState.OPEN, "let the arm go through a pour with an empty cup")
+        return Step(step_names.DRY_RUN, StepState.OPEN, "let the arm make a pour with an empty cup")
     folder, table = latest
     with reading(folder):
         time, said, is_same = str(table["time"]), str(table["said"]), table["for"] == reach_is_for(settings)

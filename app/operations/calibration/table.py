@@ -34,10 +34,12 @@ from hardware.cell.settings import CellSettings, PlaceSettings
 USUAL_THICKNESS_M = 0.004
 MOST_TILT_RAD = np.radians(1.5)
 """On a platform of 0.4 m that is 10 mm from edge to edge, and the object's ground is taken for horizontal."""
-_DIGITS = 4
+PLACE_DIGITS = 4
+"""Of a length in metres, as it is written into the cell's file."""
 _HEIGHTS = ("table_height_m", "platform_height_m")
 _CUP = "cup_station_m"
-_CORNERS = ("platform_min_m", "platform_max_m", "crop_min_m", "crop_max_m")
+_CROP = ("crop_min_m", "crop_max_m")
+_CORNERS = ("platform_min_m", "platform_max_m", *_CROP)
 
 
 @dataclass(frozen=True)
@@ -112,23 +114,29 @@ def measure_table(
 
 
 def is_in_file(place: PlaceSettings, wanted: dict[str, Any]) -> bool:
-    """Whether a cell's file holds these places; where the cup stands is entered in a step of its own."""
+    """Whether a cell's file holds these places; cup station and crop box are entered by themselves."""
     held = place.model_dump(mode="json")
     return all(
-        np.allclose(held[name], value, atol=10.0**-_DIGITS / 2)
+        np.allclose(held[name], value, atol=10.0**-PLACE_DIGITS / 2)
         for name, value in wanted.items()
-        if name != _CUP
+        if name not in (_CUP, *_CROP)
     )
 
 
 def write_former_place(path: Path, before: dict[str, Any]) -> None:
-    """Put back where things were before they were measured; of the cup's station its height alone.
+    """Put back where things were before they were measured; what was entered since moves along.
+
+    That is the crop box, and of the cup's station its height.
 
     Raises:
         PoursightError: see `write_place`.
     """
-    x, y, _ = read_cell(path).place.cup_station_m
-    write_place(path, before | {_CUP: [x, y, before[_CUP][2]]})
+    place = read_cell(path).place
+    x, y, _ = place.cup_station_m
+    back_m = np.array([*before["platform_min_m"], before["platform_height_m"]])
+    back_m -= [*place.platform_min_m, place.platform_height_m]
+    crop = {name: (getattr(place, name) + back_m).round(PLACE_DIGITS).tolist() for name in _CROP}
+    write_place(path, before | crop | {_CUP: [x, y, before[_CUP][2]]})
 
 
 def _lay_on_platform(cell: Cell, thickness_m: float) -> None:
@@ -167,7 +175,7 @@ def _found(
 ) -> Table:
     center_m = transform_points(T_base_board, board.center_m)
     center_m[2] -= thickness_m
-    moved_m = (center_m - settings.place.platform_center_m).round(_DIGITS)
+    moved_m = (center_m - settings.place.platform_center_m).round(PLACE_DIGITS)
     return Table(folder, n_views, center_m, _tilt_rad(T_base_board), moved_m)
 
 
@@ -187,5 +195,5 @@ def _places(place: PlaceSettings, moved_m: FloatArray) -> tuple[dict[str, Any], 
             shift = np.array([0.0, 0.0, moved_m[2]])
         else:
             shift = moved_m[: len(before[name])]
-        after[name] = (np.array(before[name]) + shift).round(_DIGITS).tolist()
+        after[name] = (np.array(before[name]) + shift).round(PLACE_DIGITS).tolist()
     return before, after

@@ -26,4 +26,4 @@ def read_kinematics(address: str, arm: ArmModel) -> Kinematics:
             f"so those published for a {arm.name} are used, which may put the tool 1 to 3 mm off its place; "
             f"allow the primary interface (port {PRIMARY_PORT}) on the controller, then connect again.",
         )
-    return Kinematics(model, "-".join(f"{number:08x}" for number in measured.checksum))
+    return Kinematics(model, "-".join(f"{number:08x}" for number in measured.checksum), measured)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from functools import partial
 
+import numpy as np
 import pytest
 
 from app.operations.calibration import step_names
@@ -86,6 +87,18 @@ def test_a_board_is_printed_measured_and_undone(poursight, cells):
     assert "is forgotten" in poursight("cell", "board", "bench", "--undo")[1]
 
 
+def test_a_crop_box_is_entered_and_views_have_to_be_chosen_anew(poursight):
+    path = new_cell("bench", is_simulated=True)
+    place = read_cell(path).place
+    low, high = 1000 * np.array(place.crop_min_m) + 5, 1000 * np.array(place.crop_max_m) - 5
+    words = ("--from-mm", *low.round(1), "--to-mm", *high.round(1))
+    code, out, err = poursight("cell", "crop", "bench", *words)
+    assert code == 0 and "Next: poursight cell views bench" in out, err
+    after = read_cell(path).place
+    assert np.allclose(after.crop_min_m, low / 1000) and np.allclose(after.crop_max_m, high / 1000)
+    assert after.model_copy(update={"crop_min_m": place.crop_min_m, "crop_max_m": place.crop_max_m}) == place
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -103,6 +116,9 @@ def test_a_board_is_printed_measured_and_undone(poursight, cells):
         (("cup", "bench", "--base-mm=90"), "wider at its base"),
         (("cup", "bench", "--station-mm", "900", "900", "15"), "cannot reach the cup"),
         (("dry-run", "bench", "--yes"), "No cup was entered"),
+        (("crop", "bench", "--from-mm", "0", "0", "0", "--to-mm", "0", "5", "5"), "crop box is empty"),
+        (("crop", "bench", "--from-mm", "0", "0", "0", "--to-mm", "90", "90", "90"), "is not inside"),
+        (("crop", "bench", "--from-mm", "0", "0", "0", "--to-mm", "nan", "1", "1"), "crop box is empty"),
         *(
             ((command, "bench", "--undo"), f"The step '{step}' of")
             for command, step in (

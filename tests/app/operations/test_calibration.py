@@ -1,22 +1,32 @@
+import json
+
 import numpy as np
 import pytest
 
+from app.jobs.scan_work import planned_pose
 from app.operations.calibration import step_names
 from app.operations.calibration.camera_error import camera_error
 from app.operations.calibration.capture import CaptureObserver
-from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye
+from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye, write_views
 from app.operations.calibration.check import check_cell
 from app.operations.calibration.hand_eye import calibrate_cell
-from app.operations.calibration.provenance import read_looks, runs
+from app.operations.calibration.provenance import VIEWS, read_looks, runs
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
+from core.calibration.collecting import Collection
 from core.calibration.rig import exp_pose, log_pose
-from core.errors import Cancelled, InputError, StageError
+from core.errors import Cancelled, InputError, Remedy, StageError
 from core.geometry import invert_pose
+from core.motion.arm_models import UR5
+from core.motion.factory_calibration import calibrated as calibrated_arm
 from core.progress import Reporter
 from hardware.cameras.simulated_board import SimulatedBoardCamera
 from hardware.cell import SIMULATED_CELL, read_cell
+from hardware.cell.scene import motion_scene, pour_cell
+from hardware.interfaces import Kinematics
+from hardware.robots.joint_motion import JointMotion
+from tests.core.motion.measured_arms import measured_arm
 
 N_VIEWS = 10
 
@@ -96,15 +106,8 @@ def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
 @pytest.mark.system
 def test_an_interrupted_calibration_goes_on_with_what_was_taken():
     path = measured_cell(seed=1)
-    reporter = Reporter()
-
-    def stop_after_four(look, n_usable, image):
-        if n_usable == 4:
-            reporter.cancel()
-
     before = path.read_bytes()
-    with pytest.raises(Cancelled):
-        calibrated(path, reporter, observer=CaptureObserver(taken=stop_after_four))
+    interrupted_after(path, 4)
     assert path.read_bytes() == before
     n_new = []
     found = calibrated(
@@ -175,6 +178,29 @@ def test_another_hand_eye_pose_in_the_file_changes_nothing_else(tmp_path):
     assert comments(path)[-1] == comments(SIMULATED_CELL)[-1]
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_an_arms_own_kinematics_are_kept_in_the_file_and_used_everywhere(seed):
+    path = new_cell("bench", is_simulated=False, address="192.168.0.7")
+    measured = measured_arm(UR5, seed)  # offsets of hundreds of metres among them
+    own = calibrated_arm(UR5, measured)
+    settings = read_cell(path)
+    views = shown_views(settings)
+    write_hand_eye(path, settings.camera.pose, Kinematics(own, "0badcafe", measured))
+    settings = read_cell(path)
+    assert settings.robot.kinematics_checksum == "0badcafe"
+    for arm in (settings.robot.arm, motion_scene(settings).arm, pour_cell(settings).arm):
+        assert arm == own, "to the last digit"
+    apart_m = np.linalg.norm((shown_views(settings) - views)[:, :3, 3], axis=1)
+    assert 0.0005 < apart_m.max() < 0.03, "drawn where this arm brings the camera"
+    write_hand_eye(path, settings.camera.pose)
+    assert read_cell(path).robot.arm == UR5
+
+
+def shown_views(settings):
+    """Where a page draws the views of a scan."""
+    return np.array([planned_pose(settings, joints) for joints in settings.scan.views_rad])
+
+
 def test_a_file_that_is_no_cell_stays_as_it_is(tmp_path):
     path = tmp_path / "broken.toml"
     path.write_text("name = 'x'\n")
@@ -201,3 +227,84 @@ def test_damaged_records_are_named(cells):
     (cells / "bench.calibration" / "board.json").write_text('{"boards": [{"board": {"columns": 1}}]}')
     with pytest.raises(Exception, match=r"board\.json is damaged"):
         steps(path)
+
+
+@pytest.mark.parametrize(("fact", "device"), [("kinematics", "arm"), ("intrinsics", "camera")])
+def test_looks_of_another_arm_or_camera_are_not_gone_on_with(fact, device):
+    path = measured_cell(seed=1)
+    interrupted_after(path, 2)
+    [begun] = runs(path, step_names.HAND_EYE)
+    record = json.loads((begun / VIEWS).read_text())
+    (begun / VIEWS).write_text(json.dumps(record | {fact: "0badcafe"}))
+    before = path.read_bytes()
+    n_new = []
+    watching = CaptureObserver(taken=lambda look, n_usable, image: n_new.append(n_usable))
+    for _ in range(2):  # a refusal does not make them forgotten
+        with pytest.raises(StageError, match=f"of another {device} than is connected") as refusal:
+            calibrated(path, observer=watching)
+        assert refusal.value.remedy is Remedy.RESTART_CALIBRATION
+    assert n_new == [] and path.read_bytes() == before
+    assert len(read_looks(begun)[1]) >= 2, "they are kept"
+    interrupted_after(path, 1, is_restarted=True)
+    assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) < len(record["views"]), "left aside"
+
+
+def interrupted_after(path, n_usable, **options):
+    """Calibrate until there are so many usable looks."""
+    reporter = Reporter()
+
+    def stop(_look, n_now, _image):
+        if n_now == n_usable:
+            reporter.cancel()
+
+    with pytest.raises(Cancelled):
+        calibrated(path, reporter, observer=CaptureObserver(taken=stop), **options)
+
+
+def test_a_board_that_is_not_there_is_said_and_the_file_stays(monkeypatch):
+    path = measured_cell(seed=1)
+    write_views(path, read_cell(path).scan.views_rad[:2])
+    before = path.read_bytes()
+    plain = SimulatedBoardCamera.__init__
+
+    def without_board(camera, *words):
+        plain(camera, *words)
+        camera.T_base_board = camera.lying(np.array([3.0, 3.0, 0.0]), 0.0)
+
+    monkeypatch.setattr(SimulatedBoardCamera, "__init__", without_board)
+    with pytest.raises(StageError, match=r"in sight from none of the scan's views\. No board"):
+        calibrated(path)
+    assert path.read_bytes() == before
+
+
+@pytest.mark.system
+def test_an_arm_that_is_pushed_during_an_image_costs_that_look_alone(monkeypatch):
+    path = measured_cell(seed=1)
+    plain = SimulatedBoardCamera.capture
+
+    def pushed_once(camera):
+        image = plain(camera)
+        if camera._n_shots == 5:
+            pushed = camera._robot.state().joints_rad[None] + 0.001
+            camera._robot._begin(JointMotion(pushed, 1.0, 1.0))
+        return image
+
+    monkeypatch.setattr(SimulatedBoardCamera, "capture", pushed_once)
+    found = calibrated(path)
+    _, looks = read_looks(found.folder)
+    [refused] = [look for look in looks if "arm moved while the image was taken" in look.problem]
+    assert refused.view is None and found.n_views == N_VIEWS and found.n_refused >= 1
+
+
+def test_too_few_poses_are_refused_and_what_was_taken_is_gone_on_with(monkeypatch):
+    path = measured_cell(seed=1)
+    before = path.read_bytes()
+    with monkeypatch.context() as patch:
+        patch.setattr(Collection, "next_poses", lambda *_: ())
+        with pytest.raises(StageError, match="1 view of the board is too few; take at least 6"):
+            calibrated(path)
+    assert path.read_bytes() == before
+    n_kept = len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1])
+    assert n_kept >= 1
+    interrupted_after(path, 2)
+    assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) > n_kept

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 
 from app.operations.calibration.cell_file import known_cells, new_cell, write_place
+from app.operations.calibration.crop import enter_crop_box
 from app.operations.calibration.devices import examine_device
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import RESULT, calibration_folder, runs
 from app.operations.calibration.steps import StepState, enter_board, steps
-from app.operations.calibration.table import measure_table
+from app.operations.calibration.table import is_in_file, measure_table, write_former_place
 from app.operations.calibration.undoing import undo
 from app.operations.calibration.views import choose_views
 from core.calibration.board import BoardSpec
@@ -122,6 +123,21 @@ def test_a_platform_that_is_elsewhere_than_in_the_file_is_measured_and_what_stan
     undo(calibrated, "table")
     assert read_cell(calibrated).place == before
     assert step(calibrated, "table").state is StepState.OPEN
+
+
+def test_a_crop_box_entered_since_does_not_undo_the_platform_and_moves_along_when_that_is_undone():
+    path = new_cell("bench", is_simulated=True)
+    names = ("platform_min_m", "platform_max_m", "crop_min_m", "crop_max_m", "platform_height_m")
+    before = read_cell(path).place.model_dump(mode="json", include={*names, "cup_station_m"})
+    measured_as = {name: (np.array(before[name]) - 0.011).tolist() for name in names}
+    write_place(path, measured_as)
+    low, high = np.array(measured_as["crop_min_m"]) - 0.02, np.array(measured_as["crop_max_m"]) + 0.03
+    enter_crop_box(path, low, high)
+    assert is_in_file(read_cell(path).place, measured_as)
+    write_former_place(path, before)
+    place = read_cell(path).place
+    assert place.platform_height_m == pytest.approx(before["platform_height_m"])
+    assert np.allclose(place.crop_min_m, low + 0.011) and np.allclose(place.crop_max_m, high + 0.011)
 
 
 @pytest.mark.system

@@ -9,9 +9,11 @@ import pytest
 from app.operations.arm import connected
 from app.operations.calibration.cell_file import new_cell, write_hand_eye
 from app.operations.calibration.devices import examine_device
+from core.motion.arm_models import UR5
 from core.progress import Reporter
 from hardware.cell import open_arm, read_cell
 from hardware.cell.own_arm import own_kinematics
+from hardware.cell.scene import motion_scene, pour_cell
 from hardware.simulation.ur_controller.process import ControllerProcess
 
 pytest.importorskip("rtde_control")
@@ -42,16 +44,24 @@ def test_an_arm_that_was_exchanged_since_the_calibration_is_warned_of(tmp_path, 
     pose, home_rad = read_cell(path).camera.pose, list(read_cell(path).robot.home_rad)
     with ControllerProcess("UR5", "3.15", address, home_rad) as controller:
         assert warned(path) == [], "a cell that was written by hand knows no arm"
-        checksum = own_kinematics(read_cell(path)).checksum
-        write_hand_eye(path, pose, checksum)
+        known = own_kinematics(read_cell(path))
+        checksum = known.checksum
+        write_hand_eye(path, pose, known)
         assert read_cell(path).robot.kinematics_checksum == checksum
+        assert read_cell(path).robot.arm == known.model
         assert warned(path) == []
         assert examine_device(path, "arm").problem is None
         controller.command("calibration 4.5")
         [sentence] = warned(path)
         assert SAID in sentence and checksum in sentence and "calibrate the cell again" in sentence
         assert SAID in examine_device(path, "arm").problem
-        write_hand_eye(path, pose, own_kinematics(read_cell(path)).checksum)
+        other = own_kinematics(read_cell(path))
+        assert read_cell(path).robot.arm == known.model != other.model
+        write_hand_eye(path, pose, other)
         assert warned(path) == []
+        settings = read_cell(path)
+        for arm in (settings.robot.arm, motion_scene(settings).arm, pour_cell(settings).arm):
+            assert arm == other.model, "views and pours are judged by the arm's own kinematics"
     write_hand_eye(path, pose)
-    assert read_cell(path).robot.kinematics_checksum is None
+    robot = read_cell(path).robot
+    assert robot.kinematics_checksum is None and robot.arm == UR5

@@ -50,6 +50,12 @@ FAULTS = {
     "a mirrored rotation": ("[1.0, 0.0, 0.0, 0.0]", "[-1.0, 0.0, 0.0, 0.0]", "T_flange_camera"),
     "a wrong last row": ("[0.0, 0.0, 0.0, 1.0]", "[0.0, 0.0, 0.0, 0.5]", "T_flange_camera"),
     "a short row": ("[1.0, 0.0, 0.0, 0.0]", "[1.0, 0.0, 0.0]", "T_flange_camera"),
+    "the kinematics of another arm": (
+        "[robot]\n",
+        "[robot]\nown_kinematics = {theta_rad = [0, 0, 0, 0, 0, 0], a_m = [0, -0.6, -0.5, 0, 0, 0], "
+        "d_m = [0.1, 0, 0, 0.1, 0.1, 0.1], alpha_rad = [1.57, 0, 0, 1.57, -1.57, 0]}\n",
+        "own_kinematics is of no UR5",
+    ),
     "a crop box without volume": ("0.18, -0.15, 0.35]", "0.18, -0.55, 0.35]", "crop_max_m"),
     "a crop box above the platform": ("-0.55, 0.03]", "-0.55, 0.09]", "platform_height_m"),
     "a platform without area": ("platform_max_m = [0.14", "platform_max_m = [-0.26", "platform_max_m"),

@@ -12,11 +12,17 @@ from app.gui.pages.cell_model import ShownCell, load_shown_cell
 from app.gui.views.scene import Frustum
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import known_cells
-from app.operations.calibration.provenance import RESULT, VIEWS, BoardEntry, read_boards, read_looks, runs
+from app.operations.calibration.provenance import (
+    VIEWS,
+    BoardEntry,
+    interrupted_run,
+    read_boards,
+    read_looks,
+    runs,
+)
 from app.operations.calibration.steps import Step, steps
 from core.motion.kinematics import flange_pose
 from core.scan.view_files import read_color
-from hardware.cell.settings import ARMS
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -90,8 +96,8 @@ def load_cell(key: CellKey) -> CellContents:
         return CellContents(None, shown, known)
     evidence = {step: _evidence(key.path, step, key.settings) for step in _WITH_LOOKS}
     evidence[step_names.VIEWS] = Evidence(_scan_views(key.settings))
-    boards, begun = read_boards(key.path), runs(key.path, step_names.HAND_EYE)
-    is_interrupted = bool(begun) and (begun[-1] / VIEWS).is_file() and not (begun[-1] / RESULT).exists()
+    boards = read_boards(key.path)
+    is_interrupted = interrupted_run(key.path, step_names.HAND_EYE) is not None
     board = boards[-1] if boards else None
     return CellContents(key.path, shown, known, steps(key.path), evidence, board, is_interrupted)
 
@@ -115,7 +121,7 @@ def _evidence(path: Path, step: str, settings: CellSettings) -> Evidence:
 def _flange(look: Look, settings: CellSettings) -> FloatArray:
     if look.view is not None:
         return look.view.T_base_flange
-    return flange_pose(ARMS[settings.robot.model], look.joints_rad)
+    return flange_pose(settings.robot.arm, look.joints_rad)
 
 
 def _state(look: Look) -> Literal["taken", "poor", "failed"]:
@@ -125,5 +131,5 @@ def _state(look: Look) -> Literal["taken", "poor", "failed"]:
 
 
 def _scan_views(settings: CellSettings) -> tuple[Frustum, ...]:
-    poses = flange_pose(ARMS[settings.robot.model], np.array(settings.scan.views_rad)) @ settings.camera.pose
+    poses = flange_pose(settings.robot.arm, np.array(settings.scan.views_rad)) @ settings.camera.pose
     return tuple(Frustum(f"view {k}", pose) for k, pose in enumerate(poses, 1))

@@ -62,6 +62,8 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         side.new_wanted.connect(self._want_new)
         side.form.changed.connect(self.update_actions)
         side.options.print_wanted.connect(self._print)
+        for edited in (side.options.crop.edited, self.view.box_edited):
+            edited.connect(lambda low_m, high_m: self._work.enter_crop_box(low_m, high_m, self.report))
         cup = side.options.cup
         cup.read_wanted.connect(lambda: self._work.read_station(cup.show_station))
         desk.arm.changed.connect(self._show_arm)
@@ -91,6 +93,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         settings = self.desk.cell.settings
         if settings is not None:
             self.side.options.cup.show_entry(self.desk.cell.path, entry_of(settings), settings.robot.is_real)
+            self.side.options.crop.show_box(settings.place.crop_min_m, settings.place.crop_max_m)
         self.view.show_cell(self.content.shown, BoardSpec() if board is None else board.board)
         self.side.show_cells(self.content.known, self.desk.cell.path, self.is_new)
         self._show_evidence()
@@ -248,6 +251,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         side.steps.set_lines([self._line(step, now) for step in now.steps])
         side.steps.choose(now.step)
         self._show_step(now)
+        self.view.offer_box(now.step == step_names.TABLE and now.is_idle)
         obstacle = obstacle_of(now)
         side.show_obstacle(obstacle)
         side.primary.setText(now.primary_text)

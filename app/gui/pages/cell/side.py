@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gui.pages.cell.crop_form import CropForm
 from app.gui.pages.cell.cup_form import CupForm
 from app.gui.pages.cell.step_list import StepList
 from app.gui.pages.layouts import row_of
@@ -90,10 +91,13 @@ class CellSide(SidePanel):
 
     def show_step(self, title: str, what: str, figure: str) -> None:
         """Say what the chosen step is about."""
+        is_other = title != self._title.text()
         self._line.setVisible(bool(title))
         say(self._title, title)
         say(self._what, what)
         say(self._figure, figure)
+        if is_other and self.options.isVisibleTo(self):
+            self.reveal(self.options)
 
     def show_obstacle(self, text: str) -> None:
         """Say what keeps the step from being done."""
@@ -188,6 +192,7 @@ class StepOptions(QStackedWidget):
     Signals: `print_wanted` when the board is to be printed.
 
     Attributes:
+        crop: the box that holds the object.
         cup: where it stands, and how large it is.
     """
 
@@ -206,7 +211,10 @@ class StepOptions(QStackedWidget):
         self._add("", QFormLayout())
         self._add(step_names.BOARD, self._board_form())
         self._add(step_names.HAND_EYE, _form(self.tr("Views"), self._n_views))
-        self._add(step_names.TABLE, _form(self.tr("Thickness of the board"), self._thickness))
+        self.crop = CropForm()
+        table = _form(self.tr("Thickness of the board"), self._thickness)
+        table.addRow(self.crop)
+        self._add(step_names.TABLE, table)
         self.cup = CupForm()
         cup = QFormLayout()
         cup.addRow(self.cup)

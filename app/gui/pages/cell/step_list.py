@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 
-from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtCore import QRect, QRectF, QSize, QSizeF, Qt, Signal
+from PySide6.QtGui import QFont, QFontMetrics, QFontMetricsF, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QVBoxLayout, QWidget
 from typing_extensions import override
 
@@ -15,6 +16,9 @@ from app.gui.views.painting import draw_elided, smaller
 from app.gui.views.state_mark import State, paint_mark, state_word
 
 _MARK_PX = 16
+_TEXT_LEFT_PX = GRID_PX + _MARK_PX + GRID_PX
+_ABOVE_PX, _BELOW_PX = 4, 5
+_WRAPPED = int(Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignTop)
 
 
 @dataclass(frozen=True)
@@ -58,11 +62,41 @@ class StepRow(QAbstractButton):
             self.setAccessibleName(line.title)
             self.setAccessibleDescription(f"{state_word(line.state)}: {line.figure}")
             self.setToolTip(line.figure)
+            self.updateGeometry()
             self.update()
 
     @override
     def sizeHint(self) -> QSize:
-        return QSize(30 * GRID_PX, 2 * QFontMetrics(self.font()).height() + 10)
+        width_px = 30 * GRID_PX
+        return QSize(width_px, self.heightForWidth(width_px))
+
+    @override
+    def hasHeightForWidth(self) -> bool:
+        return True
+
+    @override
+    def heightForWidth(self, width: int) -> int:
+        note = self._note_area(width, QFontMetrics(smaller(self.font())).height())
+        return ceil(note.bottom()) + _BELOW_PX
+
+    def note(self, width: int) -> str:
+        """The whole figure if a line of a row of this width holds it, else its first part."""
+        figure = "" if self._line is None else self._line.figure
+        room_px = width - _TEXT_LEFT_PX - GRID_PX
+        if QFontMetrics(smaller(self.font())).horizontalAdvance(figure) <= room_px:
+            return figure
+        return figure.split("; ")[0]
+
+    def _note_area(self, width: int, least_px: float) -> QRectF:
+        top = _ABOVE_PX + QFontMetrics(self._title_font()).height()
+        room = QRectF(_TEXT_LEFT_PX, top, width - _TEXT_LEFT_PX - GRID_PX, 100 * least_px)
+        taken = QFontMetricsF(smaller(self.font())).boundingRect(room, _WRAPPED, self.note(width))
+        return QRectF(room.topLeft(), QSizeF(room.width(), max(taken.height(), least_px)))
+
+    def _title_font(self) -> QFont:
+        font = QFont(self.font())
+        font.setWeight(QFont.Weight.DemiBold)
+        return font
 
     @override
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -76,26 +110,19 @@ class StepRow(QAbstractButton):
             painter.fillRect(QRect(0, 0, 3, area.height()), theme.color("accent"))
         elif self.underMouse() or self.hasFocus():
             painter.fillRect(area, theme.color("window"))
-        half = area.height() / 2
-        mark = QRectF(GRID_PX, 3, _MARK_PX, half - 2)
-        paint_mark(painter, mark, line.state, theme)
-        left, right = mark.right() + GRID_PX, area.width() - GRID_PX
+        note = self._note_area(area.width(), 0.0)
+        title = QRectF(_TEXT_LEFT_PX, _ABOVE_PX, note.width(), note.top() - _ABOVE_PX)
+        paint_mark(painter, QRectF(GRID_PX, title.top(), _MARK_PX, title.height()), line.state, theme)
         small = smaller(self.font())
         time_px = QFontMetrics(small).horizontalAdvance(line.when) + GRID_PX
         middle = Qt.AlignmentFlag.AlignVCenter
-        font = QFont(self.font())
-        font.setWeight(QFont.Weight.DemiBold)
-        painter.setFont(font)
+        painter.setFont(self._title_font())
         painter.setPen(theme.color("text"))
-        draw_elided(painter, QRectF(left, 3, right - left - time_px, half - 2), line.title, middle)
+        draw_elided(painter, title.adjusted(0, 0, -time_px, 0), line.title, middle)
         painter.setFont(small)
         painter.setPen(theme.color("muted"))
-        painter.drawText(
-            QRectF(right - time_px, 3, time_px, half - 2),
-            int(middle | Qt.AlignmentFlag.AlignRight),
-            line.when,
-        )
-        draw_elided(painter, QRectF(left, half, right - left, half - 3), line.figure, middle)
+        painter.drawText(title, int(middle | Qt.AlignmentFlag.AlignRight), line.when)
+        painter.drawText(note, _WRAPPED, self.note(area.width()))
         painter.end()
 
 

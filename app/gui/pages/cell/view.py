@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.gui.pages.cell_model import ShownCell
@@ -30,10 +30,14 @@ _DOT_PX = 2
 class CellView(QWidget):
     """All that is looked at.
 
+    Signals: `box_edited` with lower and upper corner (3,) of the crop box, when a side of it was dragged.
+
     Attributes:
         scene: the 3D view.
         now: below it.
     """
+
+    box_edited = Signal(object, object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -44,6 +48,8 @@ class CellView(QWidget):
         self.now = NowPanel()
         self._cell: ShownCell | None = None
         self._board = BoardSpec()
+        self._has_handles = False
+        self.scene.box_edited.connect(lambda _, low_m, high_m: self.box_edited.emit(low_m, high_m))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
@@ -59,12 +65,22 @@ class CellView(QWidget):
         model.draw_platform_top(scene, np.empty((0, 3), dtype=np.float32))
         if cell.has_arm:
             scene.set_mesh(_CUP, *model.cup, color="accent")
-        scene.set_box(_BOX, cell.box_min_m, cell.box_max_m)
+        self._draw_box(cell)
         if cell.has_arm and (is_other or _ARM not in scene.layers()):
             scene.set_arm(_ARM, model.arm, model.home_rad, tools=model.tools)
             scene.set_points(_REACH, cell.reach_m, color="scene", size_px=1)
         if is_other:
             scene.fit(_TABLE, _BOX, _REACH)
+
+    def offer_box(self, is_offered: bool) -> None:
+        """Let the sides of the crop box be dragged, or not."""
+        if is_offered != self._has_handles:
+            self._has_handles = is_offered
+            if self._cell is not None:
+                self._draw_box(self._cell)
+
+    def _draw_box(self, cell: ShownCell) -> None:
+        self.scene.set_box(_BOX, cell.box_min_m, cell.box_max_m, has_handles=self._has_handles)
 
     def show_looks(self, frusta: Sequence[Frustum], T_base_board: FloatArray | None) -> None:
         """Show from where the board was looked at, and where it lies (4, 4).

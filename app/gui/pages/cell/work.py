@@ -6,15 +6,17 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+import numpy.typing as npt
 from PySide6.QtCore import QCoreApplication
 
 from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
 from app.gui.pages.cell.side import StepOptions
 from app.jobs.cell_work import CellWork
-from app.operations.calibration import step_names, steps, undoing
+from app.operations.calibration import crop, step_names, steps, undoing
 from app.operations.calibration.cell_file import known_cells, new_cell
 from app.operations.calibration.cup_entry import read_taught_station
+from core.errors import PoursightError
 
 _PATIENCE_REAL_S = 4.0
 """A real arm comes to rest before its process may be ended."""
@@ -87,6 +89,18 @@ class CellJobs:
     def read_station(self, then: Callable[[tuple[float, float, float]], None]) -> None:
         """Read where the hand was guided to."""
         self._desk.background.run(_IN_BACKGROUND, partial(read_taught_station, self._path()), then)
+
+    def enter_crop_box(
+        self, low_m: npt.ArrayLike, high_m: npt.ArrayLike, refused: Callable[[PoursightError], None]
+    ) -> None:
+        """Put another crop box, corners (3,) in metres, into the cell's file, which is shown again."""
+        enter = partial(crop.enter_crop_box, self._path(), low_m, high_m)
+
+        def say(error: PoursightError) -> None:
+            refused(error)
+            self.read_again()
+
+        self._desk.background.run(_IN_BACKGROUND, enter, lambda _: self.read_again(), say)
 
     def undo(self, step: str) -> None:
         """Take back a step."""

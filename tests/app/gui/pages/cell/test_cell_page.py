@@ -5,78 +5,30 @@ from __future__ import annotations
 import os
 import signal
 
+import numpy as np
 import pytest
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QLabel, QPushButton, QSpinBox
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QLabel, QSpinBox
 
-from app.gui.pages.cell.page import CellPage
-from app.gui.pages.cell.step_list import StepRow
+from app.gui.pages.cell.step_list import StepLine, StepRow
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
 from app.operations.calibration.cup_entry import entry_of
 from app.operations.calibration.provenance import read_looks, runs
-from app.operations.calibration.steps import enter_board
-from core.calibration.board import BoardSpec
 from hardware.cell import read_cell
+from tests.app.gui.pages.cell.acting import (
+    button,
+    choose,
+    measured_cell,
+    pick,
+    press,
+    settle,
+    states,
+    text,
+)
 
 STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
 N_VIEWS = 8
-
-
-@pytest.fixture
-def cells(tmp_path, monkeypatch):
-    monkeypatch.setenv("POURSIGHT_CELLS", str(tmp_path / "cells"))
-    return tmp_path / "cells"
-
-
-@pytest.fixture
-def page(qtbot, desk, cells):
-    page = CellPage(desk)
-    qtbot.addWidget(page)
-    page.resize(1040, 640)
-    page.show()
-    desk.cell.choose(None)
-    settle(qtbot, desk, page)
-    return page
-
-
-def settle(qtbot, desk, page):
-    """Wait until nothing is under way and the page shows the chosen cell."""
-    qtbot.waitUntil(lambda: desk.jobs.is_idle and desk.background.is_idle)
-    qtbot.waitUntil(lambda: page.content is not None and page.content.path == desk.cell.path)
-
-
-def choose(qtbot, desk, page, path):
-    desk.cell.choose(path)
-    settle(qtbot, desk, page)
-
-
-def button(page, name="primary"):
-    return page.findChild(QPushButton, name)
-
-
-def press(qtbot, page, name="primary"):
-    assert button(page, name).isEnabled() and button(page, name).isVisible(), name
-    qtbot.mouseClick(button(page, name), Qt.MouseButton.LeftButton)
-
-
-def pick(qtbot, page, step):
-    qtbot.mouseClick(page.findChild(StepRow, f"step_{step}"), Qt.MouseButton.LeftButton)
-
-
-def text(page, name):
-    return page.findChild(QLabel, name).text()
-
-
-def states(page):
-    return {line.key: line.state for line in page.side.steps.lines}
-
-
-def measured_cell(seed=0):
-    path = new_cell("bench", is_simulated=True, seed=seed)
-    enter_board(path, BoardSpec(), "a4", 0.030)
-    return path
 
 
 def test_of_the_shipped_cell_nothing_is_changed_but_a_new_one_is_offered(qtbot, desk, page, cells):
@@ -267,3 +219,58 @@ def test_stop_ends_a_calibration_and_what_was_taken_is_kept(qtbot, desk, page):
     assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) >= 2
     pick(qtbot, page, "hand-eye")
     assert button(page).text() == "Continue calibration"
+
+
+def test_a_row_says_whole_parts_of_its_figure_and_wraps_what_is_too_long(qtbot):
+    row = StepRow("check")
+    qtbot.addWidget(row)
+    lines = {}
+    for figure in ("7 views agree; as expected", f"{'7 views agree ' * 4}; as expected", "too long " * 20):
+        row.set_line(StepLine("check", "Check", "fresh", figure.strip(), "10:00"))
+        lines[row.note(300)] = row.heightForWidth(300)
+    [whole, first, wrapped] = lines
+    assert whole == "7 views agree; as expected" and first.endswith("agree ") and "expected" not in first
+    assert wrapped == ("too long " * 20).strip()
+    assert lines[wrapped] > lines[whole] + 20
+    assert "…" not in "".join(lines) and row.toolTip() == wrapped
+
+
+def test_the_crop_box_is_typed_and_dragged_in_the_platforms_step_alone(qtbot, desk, page):
+    path = new_cell("bench", is_simulated=True)
+    choose(qtbot, desk, page, path)
+    before = read_cell(path).place
+    boxes = page.view.scene._boxes
+    pick(qtbot, page, "cup")
+    assert not boxes["box"].has_handles
+    pick(qtbot, page, "table")
+    assert boxes["box"].has_handles
+
+    low, high = page.findChild(QDoubleSpinBox, "crop_low_x"), page.findChild(QDoubleSpinBox, "crop_high_z")
+    assert low.value() == pytest.approx(1000 * before.crop_min_m[0])
+    high.setValue(300.0)
+    qtbot.waitUntil(lambda: read_cell(path).place.crop_max_m[2] == pytest.approx(0.3))
+    settle(qtbot, desk, page)
+    assert boxes["box"].max_m[2] == pytest.approx(0.3), "the view follows"
+
+    dragged = np.add(before.crop_min_m, (0.01, 0, 0))
+    page.view.scene.box_edited.emit("box", dragged, np.array(read_cell(path).place.crop_max_m))
+    qtbot.waitUntil(lambda: read_cell(path).place.crop_min_m[0] == pytest.approx(dragged[0]))
+    settle(qtbot, desk, page)
+    assert low.value() == pytest.approx(1000 * dragged[0])
+
+    said, kept = [], path.read_bytes()
+    desk.message.connect(said.append)
+    high.setValue(-500.0)
+    qtbot.waitUntil(lambda: bool(said))
+    settle(qtbot, desk, page)
+    assert "crop box is empty" in said[0] and path.read_bytes() == kept
+    assert high.value() == pytest.approx(300.0), "what was refused is not shown"
+
+
+@pytest.mark.parametrize("step", ["board", "table", "views", "cup"])
+def test_what_a_step_may_be_told_is_in_sight_once_it_is_chosen(qtbot, desk, page, step):
+    choose(qtbot, desk, page, new_cell("bench", is_simulated=True))
+    pick(qtbot, page, step)
+    qtbot.waitUntil(lambda: not page.side.options.visibleRegion().isEmpty())
+    told = page.side.options.currentWidget().findChildren(QAbstractSpinBox)[0]
+    qtbot.waitUntil(lambda: not told.visibleRegion().isEmpty())

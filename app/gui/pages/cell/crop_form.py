@@ -1,0 +1,63 @@
+"""The corners of the crop box, typed."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QFormLayout, QWidget
+
+from app.gui.pages.layouts import row_of
+from app.gui.theme import GRID_PX
+
+MM = 1000.0
+_REACH_MM = 2000.0
+_BOX_PX = 62
+"""Three of them beside a title are as wide as the panel."""
+Point = tuple[float, float, float]
+
+
+class CropForm(QWidget):
+    """Two corners, in the arm's base frame.
+
+    Signals: `edited` with lower and upper corner (3,) in metres, when somebody typed another value.
+    """
+
+    edited = Signal(object, object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._low, self._high = ([_box(f"crop_{end}_{axis}") for axis in "xyz"] for end in ("low", "high"))
+        form = QFormLayout(self)
+        form.setContentsMargins(0, 0, 0, 0)
+        form.setSpacing(GRID_PX)
+        for title, boxes in (
+            (self.tr("Crop box from, mm"), self._low),
+            (self.tr("to: x, y, z"), self._high),
+        ):
+            for box in boxes:
+                box.setAccessibleName(title)
+                box.setToolTip(
+                    self.tr("What is outside is no part of the object; drag its sides in the view")
+                )
+                box.valueChanged.connect(self._emit)
+            form.addRow(title, row_of(*boxes))
+
+    def show_box(self, low_m: Point, high_m: Point) -> None:
+        """Show another box."""
+        for box, value_m in zip([*self._low, *self._high], [*low_m, *high_m], strict=True):
+            with QSignalBlocker(box):
+                box.setValue(value_m * MM)
+
+    def _emit(self) -> None:
+        low, high = (tuple(box.value() / MM for box in boxes) for boxes in (self._low, self._high))
+        self.edited.emit(low, high)
+
+
+def _box(name: str) -> QDoubleSpinBox:
+    box = QDoubleSpinBox()
+    box.setObjectName(name)
+    box.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
+    box.setFixedWidth(_BOX_PX)
+    box.setRange(-_REACH_MM, _REACH_MM)
+    box.setDecimals(1)
+    box.setKeyboardTracking(False)
+    return box
