@@ -50,8 +50,8 @@ def make_application() -> QApplication:
 def _give_back_large_memory() -> None:
     """Have the C library give large blocks back to the system as soon as they are free.
 
-    It learns from the first ones freed to keep the next, and pictures and models leave holes: after five rounds
-    through all pages 573 MB were 528. Source: mallopt(3), glibc alone has it.
+    It learns from the first ones freed to keep the next, and pictures and models leave holes: after five
+    rounds through all pages 573 MB were 528. Source: mallopt(3); glibc alone has it.
     """
     with suppress(AttributeError, OSError):
         library = ctypes.CDLL(None)
