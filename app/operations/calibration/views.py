@@ -114,7 +114,7 @@ def said_of_views(views: tuple[ReachableView, ...]) -> str:
     least_mm = 1000 * min(view.clearance_m for view in views)
     sides = len({round(view.azimuth_deg / 60) % 6 for view in views if view.elevation_deg < 75})
     return (
-        f"{len(views)} views from heights of {min(heights):.0f} to {max(heights):.0f} degrees; from "
+        f"{len(views)} views at elevations of {min(heights):.0f} to {max(heights):.0f} degrees; from "
         f"{sides} of 6 sides, {least_mm:.0f} mm clear"
     )
 
