@@ -1,8 +1,10 @@
 """Train the network on rendered examples, and keep weights, learning curves and provenance.
 
 Usage: python -m training.appearance.train EXAMPLES.npz OUT [--epochs N] [--seed S] [--depth]
+    [--leave-out KIND ...]
 
-With --depth the network also sees nearness: for comparison, the program runs networks of colours only.
+With --depth the network also sees nearness: for comparison, the program runs networks of colours only. With
+--leave-out nothing is learnt from some kinds, and their development objects are held out instead.
 """
 
 from __future__ import annotations
@@ -12,7 +14,7 @@ import csv
 import json
 import platform
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -24,6 +26,7 @@ import numpy as np
 import optax
 
 from training.appearance.model import Weights, forward, initial_weights
+from training.appearance.split import split
 
 _BATCH = 16
 _RATE, _DECAY = 2e-3, 1e-4
@@ -81,7 +84,9 @@ def _missed(map_logits: jax.Array, maps: jax.Array) -> jax.Array:
     return (is_there * (1 - 2 * both / (either + 1))).sum() / jnp.maximum(is_there.sum(), 1)
 
 
-def train(examples: Path, out: Path, n_epochs: int, seed: int, *, sees_depth: bool) -> None:
+def train(
+    examples: Path, out: Path, n_epochs: int, seed: int, *, sees_depth: bool, leave_out: Sequence[str] = ()
+) -> None:
     """Train, writing weights and curves after each epoch."""
     with np.load(examples, allow_pickle=False) as file:
         known = {name: file[name] for name in file.files}
@@ -89,7 +94,7 @@ def train(examples: Path, out: Path, n_epochs: int, seed: int, *, sees_depth: bo
     if sees_depth:
         images = np.concatenate([images, known["nearness"][..., None]], axis=-1)
     every = Examples(images, known["contain"], known["is_container"])
-    learnt, held_out = every.of(~known["is_held_out"]), every.of(known["is_held_out"])
+    learnt, held_out = map(every.of, split(known, leave_out))
     random = np.random.default_rng(seed)
     n_steps = n_epochs * (len(learnt.color) // _BATCH)
     optimizer = optax.chain(
@@ -126,6 +131,7 @@ def train(examples: Path, out: Path, n_epochs: int, seed: int, *, sees_depth: bo
         },
         "seed": seed,
         "sees_depth": sees_depth,
+        "left_out": list(leave_out),
         "epochs": n_epochs,
         "batch": _BATCH,
         "rate": _RATE,
@@ -226,8 +232,16 @@ def main() -> None:
     parser.add_argument("--epochs", type=int, default=14)
     parser.add_argument("--seed", type=int, default=23)
     parser.add_argument("--depth", action="store_true")
+    parser.add_argument("--leave-out", nargs="+", default=[], metavar="KIND")
     given = parser.parse_args()
-    train(given.examples, given.out, given.epochs, given.seed, sees_depth=given.depth)
+    train(
+        given.examples,
+        given.out,
+        given.epochs,
+        given.seed,
+        sees_depth=given.depth,
+        leave_out=given.leave_out,
+    )
 
 
 if __name__ == "__main__":
