@@ -347,10 +347,9 @@ class UR5Robot:
     def _end_stopped_program(self) -> None:
         """End our program that a stop of the controller has paused, where the worker has not said so yet.
 
-        Once the worker is gone nobody can tell whose program is paused.
+        Once the worker is gone nobody can tell whose program is paused; after a stop neither.
         """
-        was_said = self._refusal is not None and type(self._refusal) is not RobotStopped
-        if self._connection is None or was_said:
+        if self._connection is None or self._refusal is not None:
             return
         with suppress(RobotLost):
             error = deviation(self._connection.worker.state())

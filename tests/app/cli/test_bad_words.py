@@ -66,13 +66,17 @@ class Worked(BaseException):
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a command; an argument has no option. Numbers, switches, and one of few are no words."""
+    """A parameter of a command; an argument has no option. Numbers, switches, and one of few are no words.
+
+    Some take several numbers.
+    """
 
     name: str
     option: str | None
     is_required: bool
     parser: Callable[[str], object] | None
     is_word: bool
+    n_numbers: int
 
 
 def parameters_of(callback):
@@ -85,7 +89,9 @@ def parameters_of(callback):
         kind, info = get_args(hint)[:2]
         option = info.default if isinstance(info, OptionInfo) else None  # its first argument
         is_required = parameter.default is parameter.empty
-        yield Parameter(name, option, is_required, info.parser, bool({str, Path} & set(kinds(kind))))
+        is_word = bool({str, Path} & set(kinds(kind)))
+        n_numbers = len(get_args(kind)) if get_origin(kind) is tuple else 0
+        yield Parameter(name, option, is_required, info.parser, is_word, n_numbers)
 
 
 def kinds(hint):
@@ -235,7 +241,8 @@ def call(place, words, parameter, value):
     for one in COMMANDS[words]:
         if one is parameter or one.is_required:
             given = value if one is parameter else place.good(words, one.name)
-            line += [given] if one.option is None else [one.option, given]
+            values = ["1"] * one.n_numbers or [given]
+            line += values if one.option is None else [one.option, *values]
     return [*line, "0", "0"] if words[0] == "choose" else line
 
 

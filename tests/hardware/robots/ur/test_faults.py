@@ -186,12 +186,9 @@ def test_a_program_that_does_not_start_is_said_and_a_protective_stop_waits_for_i
     fast_bench.works_again()
 
 
-@pytest.mark.parametrize("was_stopped", [False, True])
 def test_a_recovery_asked_for_before_the_worker_has_said_what_happened_ends_our_paused_program(
-    fast_bench: Bench, monkeypatch: pytest.MonkeyPatch, was_stopped: bool
+    fast_bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    if was_stopped:
-        fast_bench.robot.stop()
     monkeypatch.setattr(WorkerLink, "_take", lambda self, message: None)
     fast_bench.controller.command("protective stop")
     wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
