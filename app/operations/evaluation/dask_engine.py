@@ -30,6 +30,8 @@ _CONNECT_S = 5
 _POLL_S = 0.05
 _COUNT_EVERY_S = 1.0
 _WARN_AFTER_S = 10.0
+_LOST_S, _REPLENISH_S = 5, 1.0
+"""Time that a worker has to come back, and between two looks whether one is missing."""
 _LARGEST_MESH = "1GB"
 """Dask warns of what is larger than this."""
 _ALONE = threading.Lock()
@@ -51,7 +53,7 @@ def local_cluster(workers: int | None, port: int) -> Iterator[tuple[str, int]]:
         InputError: the port is taken.
     """
     n_workers = workers or len(os.sched_getaffinity(0))
-    with _started(n_workers, port) as cluster:
+    with _started(n_workers, port) as cluster, _replenished(cluster, n_workers):
         yield cluster.scheduler_address, n_workers
 
 
@@ -319,6 +321,24 @@ def _first_line(error: BaseException) -> str:
     return excerpt((str(error) or type(error).__name__).splitlines()[0].rstrip("."))
 
 
+@contextmanager
+def _replenished(cluster: LocalCluster, n_workers: int) -> Iterator[None]:
+    """Start a worker anew that is gone for good: Dask gives one up whose start fails after it had died."""
+    is_over = threading.Event()
+
+    def replenish() -> None:
+        while not is_over.wait(_REPLENISH_S):
+            cluster.scale(n_workers)
+
+    thread = threading.Thread(target=replenish, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        thread.join()
+
+
 def _started(n_workers: int, port: int) -> LocalCluster:
     import dask
     from distributed import LocalCluster
@@ -327,6 +347,7 @@ def _started(n_workers: int, port: int) -> LocalCluster:
         {
             "distributed.nanny.pre-spawn-environ": THREADS,
             "distributed.scheduler.allowed-failures": MAX_DEATHS - 1,
+            "distributed.deploy.lost-worker-timeout": f"{_LOST_S}s",
         }
     )
     try:

@@ -8,7 +8,7 @@ import time
 
 import psutil
 import pytest
-from distributed import LocalCluster
+from distributed import Client, LocalCluster
 
 from app.operations.evaluation import dask_engine
 from app.operations.evaluation.dask_engine import DaskEngine
@@ -17,6 +17,7 @@ from core.errors import Cancelled, InputError, Remedy, WorkerError
 from core.progress import Reporter
 from tests.app.operations.evaluation.conftest import running_cluster
 from tests.app.operations.evaluation.fakes import done, fake_task, fake_trial, pids
+from tests.patience import wait_until
 
 pytestmark = pytest.mark.system
 
@@ -157,6 +158,14 @@ def test_a_worker_may_join_later(tmp_path, monkeypatch):
     assert [result.trials[0].problem for _, result in found] == ["", ""]
     assert len(reporter.said) == 1
     assert "--nthreads 1" in reporter.said[0]
+
+
+def test_workers_that_are_given_up_are_started_anew(tmp_path):
+    with running_cluster(2) as (_, address):
+        with Client(address) as client:
+            gone = set(client.retire_workers())
+            wait_until(lambda: len(set(client.scheduler_info()["workers"]) - gone) == 2)
+        assert set(finished(DaskEngine(address, fake_trial), [fake_task(tmp_path, "a")])) == {"a"}
 
 
 def test_a_scheduler_that_goes_is_a_sentence_and_takes_its_workers_along(tmp_path):
