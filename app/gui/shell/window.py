@@ -40,6 +40,8 @@ ARM_PAGES = ("scan", "robot")
 """Pages whose work moves the arm: with a real one "Next" only shows them."""
 _OPENGL = "app.gui.views.scene.view"
 """Where pyqtgraph and PyOpenGL come in; the scene itself imports it when the first one is made."""
+_BOUNDS = "scipy.special"
+"""For the bounds of pours, all of SciPy that the window needs; loaded on their page it stalled for 0.2 s."""
 
 
 class Preload(QThread):
@@ -48,6 +50,7 @@ class Preload(QThread):
     @override
     def run(self) -> None:
         import_module(_OPENGL)
+        import_module(_BOUNDS)
         for key in (*WORK, *OTHERS):
             import_page(key)
 
