@@ -11,6 +11,7 @@ from core.collision import CollisionModel
 from core.imagination.body import BodyFile, write_body
 from core.imagination.cup import cup_parts
 from core.imagination.object_at_rest import ObjectAtRest
+from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.parameters.bodies import CupParameters
@@ -47,19 +48,20 @@ class BodyFiles:
         return self._folder.path / f"{name}.obj"
 
 
-class MadeAhead:
-    """What idle processors made of surfaces before anybody asked for it."""
+class DropsAhead:
+    """Drops that idle processors made before anybody asked for them."""
 
     def __init__(self) -> None:
-        self._made: list[tuple[TriangleMesh, Any]] = []
+        self._made: list[tuple[TriangleMesh, Parameters, Drop]] = []
 
-    def keep(self, surface: TriangleMesh, result: Any) -> None:
-        """Keep what was made of a surface."""
-        self._made.append((surface, result))
+    def keep(self, surface: TriangleMesh, parameters: Parameters, drop: Drop) -> None:
+        """Keep a drop on a surface."""
+        self._made.append((surface, parameters, drop))
 
-    def of(self, surface: TriangleMesh) -> Any:
-        """Return what was made of that very surface; none if nothing was."""
-        return next((result for one, result in self._made if one is surface), None)
+    def of(self, surface: TriangleMesh, parameters: Parameters) -> Drop | None:
+        """Return the drop on that very surface with these parameters; none if there was none."""
+        made = (drop for one, known, drop in self._made if one is surface and known == parameters)
+        return next(made, None)
 
 
 SpareTask = tuple[Task, Callable[[Any], None]]
@@ -84,7 +86,7 @@ class ImaginationContext:
     reporter: Reporter
     bodies: BodyFiles = field(default_factory=BodyFiles)
     spare: list[SpareTask] = field(default_factory=list)
-    drops_ahead: MadeAhead = field(default_factory=MadeAhead)
+    drops_ahead: DropsAhead = field(default_factory=DropsAhead)
 
     def reading(self, parameters: Parameters) -> ImaginationContext:
         """Return the same with other parameters."""

@@ -94,13 +94,13 @@ def judge_ahead(context: ImaginationContext, model: CollisionModel) -> None:
     Most objects of which nobody saw the bottom are containers if it is closed; then the leaking reading is
     asked about.
     """
-    leaky = None if model.unseen is None else model.unseen.leaky
-    by_omega = context.parameters.containability.verdict == "omega"
+    leaky, parameters = None if model.unseen is None else model.unseen.leaky, context.parameters
+    by_omega = parameters.containability.verdict == "omega"
     if leaky is None or by_omega or context.runner.workers == 1:
         return
     with suppress(StageError):  # smaller than a candy: the verdict says so if it comes to that
         task = drop_task(context, CollisionModel.exact(leaky))
-        context.spare.append((task, partial(context.drops_ahead.keep, leaky)))
+        context.spare.append((task, partial(context.drops_ahead.keep, leaky, parameters)))
 
 
 def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
@@ -114,7 +114,8 @@ def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict:
     if unseen is None or other is None:
         return verdict
     body = CollisionModel.exact(other)
-    share = capacity_share(context, body, context.drops_ahead.of(other) or imagine_drop(context, body))
+    drop = context.drops_ahead.of(other, context.parameters) or imagine_drop(context, body)
+    share = capacity_share(context, body, drop)
     return replace(verdict, unseen_ml=unseen.unseen_ml, other_share=share)
 
 

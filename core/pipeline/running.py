@@ -16,7 +16,7 @@ from core.collision import CollisionModel, simplify
 from core.imagination.amount.reasoning import plan_amount
 from core.imagination.amount.result import PlannedAmount
 from core.imagination.choice import choose_pour
-from core.imagination.context import BodyFiles, ImaginationContext, MadeAhead, SpareTask
+from core.imagination.context import BodyFiles, DropsAhead, ImaginationContext, SpareTask
 from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
 from core.imagination.judgement import Judgement, judge, judge_ahead
@@ -70,7 +70,7 @@ class Tools:
     early: Path | None = None
     cell: PourCell | None = None
     spare: list[SpareTask] = field(default_factory=list)
-    drops_ahead: MadeAhead = field(default_factory=MadeAhead)
+    drops_ahead: DropsAhead = field(default_factory=DropsAhead)
 
     def context(self, parameters: Parameters) -> ImaginationContext:
         """Return the context of an imagination that reads these parameters."""
@@ -109,7 +109,10 @@ class Given:
 
     def in_worker(self, task: Task, label: str) -> Any:
         """Run a task that returns its result and its warnings, and pass the warnings on."""
-        result, warnings = self.tools.runner.run([task], label, self.tools.reporter)[0]
+        return self.heard(*self.tools.runner.run([task], label, self.tools.reporter)[0])
+
+    def heard(self, result: Any, warnings: list[str]) -> Any:
+        """Pass a task's warnings on, and return its result."""
         for sentence in warnings:
             self.tools.reporter.warn(sentence)
         return result
@@ -189,11 +192,9 @@ def _body_of(mesh: TriangleMesh, given: Given, unseen: UnseenReadings | None) ->
         Task(collision_job, (mesh, settings)),
         *(Task(simplify, (o, settings.max_faces)) for o in others),
     ]
-    (model, warnings), *simplified = given.tools.runner.run(tasks, "collision", given.tools.reporter)
-    for sentence in warnings:
-        given.tools.reporter.warn(sentence)
-    made: CollisionModel = model
-    return made if unseen is None else replace(made, unseen=UnseenReadings(unseen.unseen_ml, *simplified))
+    done, *simplified = given.tools.runner.run(tasks, "collision", given.tools.reporter)
+    model: CollisionModel = given.heard(*done)
+    return model if unseen is None else replace(model, unseen=UnseenReadings(unseen.unseen_ml, *simplified))
 
 
 def _drop(given: Given) -> Drop:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import suppress
 from itertools import product
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from core.geometry import FloatArray
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, NotInRemoteControl, ProgramStopped, RobotError, RobotLost
-from hardware.robots.ur.checks import refuse_local_control
+from hardware.robots.ur.checks import deviation, refuse_local_control
 from hardware.robots.ur.dashboard import Dashboard
 from hardware.robots.ur.joint_limits import JointLimits
 from hardware.robots.ur.link import WorkerLink
@@ -107,6 +108,17 @@ def end_program_after(error: RobotError, dashboard: Dashboard, name: str) -> Rob
     except RobotLost:
         pass  # The watchdog ends the program.
     return error
+
+
+def end_stopped_program(worker: WorkerLink, dashboard: Dashboard, name: str) -> None:
+    """End our program that a stop of the controller has paused, where the worker has not said so yet.
+
+    Once the worker is gone nobody can tell whose program is paused; after a stop of ours neither.
+    """
+    with suppress(RobotLost):
+        error = deviation(worker.state())
+        if error is not None:
+            end_program_after(error, dashboard, name)
 
 
 def _outermost(joints_rad: FloatArray, tool_m: FloatArray) -> list[int]:

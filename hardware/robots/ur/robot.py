@@ -25,12 +25,12 @@ from hardware.modes import unreadiness
 from hardware.robots.joint_motion import checked_path
 from hardware.robots.ur.asking import (
     end_program_after,
+    end_stopped_program,
     refuse_beyond_safety,
     stop_program,
     switch_tool_output,
 )
 from hardware.robots.ur.checks import (
-    deviation,
     raise_if,
     refuse_local_control,
     refuse_other_kinematics,
@@ -252,7 +252,8 @@ class UR5Robot:
             RobotError: something else has to be done by a person first; the sentence says what.
         """
         with self._command_lock:
-            self._end_stopped_program()
+            if self._connection is not None and self._refusal is None:
+                end_stopped_program(self._connection.worker, self._connection.dashboard, self.name)
             self._disconnect()
             was_lost = isinstance(self._refusal, RobotLost)
             # Not later: a stop that comes meanwhile has to be recovered from anew. Not earlier: the old
@@ -343,18 +344,6 @@ class UR5Robot:
         refuse_other_arm(seen, self.kinematics.model, self._tool)
         refuse_power_supply(seen, self._tool, self.name)
         return seen
-
-    def _end_stopped_program(self) -> None:
-        """End our program that a stop of the controller has paused, where the worker has not said so yet.
-
-        Once the worker is gone nobody can tell whose program is paused; after a stop neither.
-        """
-        if self._connection is None or self._refusal is not None:
-            return
-        with suppress(RobotLost):
-            error = deviation(self._connection.worker.state())
-            if error is not None:
-                self._end_program(error)
 
     def _disconnect(self) -> None:
         connection, self._connection = self._connection, None

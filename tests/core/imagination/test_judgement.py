@@ -1,7 +1,7 @@
 import pytest
 
 from core.collision import CollisionModel
-from core.imagination.context import ImaginationContext
+from core.imagination.context import DropsAhead, ImaginationContext
 from core.imagination.drop import imagine_drop
 from core.imagination.judgement import Judgement, judge, judge_ahead
 from core.mesh import TriangleMesh
@@ -149,3 +149,12 @@ def test_nothing_is_begun_ahead_that_no_answer_asks_for(dish, pipe, few, pool):
         context = ImaginationContext(parameters, runner, Reporter())
         judge_ahead(context, CollisionModel.exact(dish.surface, unseen))
         assert not context.spare
+
+
+def test_a_drop_that_was_made_ahead_is_that_of_its_surface_and_parameters(dish, dish_judged, few):
+    ahead, drop = DropsAhead(), dish_judged.containability
+    ahead.keep(dish.surface, few, drop)
+    others = apply_settings(few, {"containability.contact.lateral_friction": 0.9})
+    assert ahead.of(dish.surface, few) is drop
+    assert ahead.of(dish.surface, others) is None
+    assert ahead.of(dish.surface.translated([0.0, 0.0, 0.0]), few) is None
