@@ -327,11 +327,11 @@ class ArmView(QWidget):
         elif self._motion is None:
             said = self.tr("The arm as it is now.")
         elif self._is_following:
-            said = self.tr("Solid: the arm now. Transparent: in one second.")
+            said = self.tr("Solid: now. Transparent: in one second.")
         else:
-            said = self.tr("Solid: the arm now. Transparent: the plan.")
+            said = self.tr("Solid: now. Transparent: the plan.")
         if self._candies.candies is not None and self._motion is not None:
-            said += " " + self.tr("Candies: as imagined.")
+            said += " " + self.tr("Candies: imagined.")
         elif self._truth is not None:
             said = self.tr("Simulated outcome: grey candies with a rim are spilled.")
         self._caption.setText(said)
