@@ -44,6 +44,7 @@ from core.resources import RESOURCES
 from hardware.cell import read_cell
 from hardware.simulation.objects import builtin_object
 from tests.app.sessions import make_poured_session, make_session
+from tests.patience import HANG_S
 
 SIZES = ((1280, 800), (1920, 1080))
 THEMES = ("light", "dark")
@@ -118,7 +119,7 @@ def _picture(target: Path, library: Path, theme: str, size: tuple[int, int]) -> 
     walk = Walk(window)
     ready: list[bool] = []
     window.ready.connect(lambda: ready.append(True))
-    walk.wait(lambda: ready, "the window is ready", 60)
+    walk.wait(lambda: ready, "the window is ready", HANG_S)
     _keep(walk, target / f"welcome-{theme}-{size[0]}.png")
     _picture_cell(walk, target, f"{theme}-{size[0]}")
     for name in OBJECTS:
@@ -168,13 +169,13 @@ def _picture_cell(walk: Walk, target: Path, how: str) -> None:
     cell = walk.window.desk.cell
     cell.choose(known_cells()[0])
     walk.window.show_page("cell")
-    walk.wait(lambda: cell.path is not None, "the cell is read", 20)
+    walk.wait(lambda: cell.path is not None, "the cell is read", HANG_S)
     _keep(walk, target / f"cell-{how}.png")
     for step in steps(known_cells()[0]):
         walk.click(f"step_{step.name}")
         _keep(walk, target / f"cell-{step.name}-{how}.png")
     cell.choose(None)
-    walk.wait(lambda: cell.path is None, "the shipped cell is read", 20)
+    walk.wait(lambda: cell.path is None, "the shipped cell is read", HANG_S)
 
 
 def _make_objects(folder: Path) -> None:
@@ -190,7 +191,7 @@ def _plan(walk: Walk) -> None:
     """Connect the simulated arm and plan, so that there is something to see."""
     walk.window.page("robot").press_primary()
     let_work(0.5)
-    walk.wait(lambda: walk.shown(QWidget, "hold_to_pour"), "the pour is planned", 60)
+    walk.wait(lambda: walk.shown(QWidget, "hold_to_pour"), "the pour is planned", HANG_S)
 
 
 def _judge(walk: Walk, objects: Path) -> None:
@@ -198,11 +199,11 @@ def _judge(walk: Walk, objects: Path) -> None:
     page = walk.window.page("tuning")
     assert isinstance(page, TuningPage)
     page.open(objects)
-    walk.wait(lambda: walk.window.desk.background.is_idle, "the objects are read", 20)
+    walk.wait(lambda: walk.window.desk.background.is_idle, "the objects are read", HANG_S)
     if "Run" in page.findChild(QPushButton, PRIMARY).text():
         page.press_primary()
         let_work(0.5)
-        walk.wait_for_work("the objects are judged", 240)
+        walk.wait_for_work("the objects are judged", HANG_S)
 
 
 def _fit(walk: Walk, path: Path) -> None:
@@ -219,7 +220,7 @@ def _fit(walk: Walk, path: Path) -> None:
     page.findChild(QSpinBox, "fit_trials").setValue(20)
     walk.click("fit_start")
     let_work(0.5)
-    walk.wait_for_work("the fit", 240)
+    walk.wait_for_work("the fit", HANG_S)
     _keep(walk, path)
     walk.click("fit_back")
 
@@ -231,15 +232,15 @@ def _compare(walk: Walk, library: Path, path: Path) -> None:
     page = walk.window.page("history")
     assert isinstance(page, HistoryPage)
     page.compare(*(library / name for name in OBJECTS))
-    walk.wait(lambda: walk.window.desk.background.is_idle, "the sessions are compared", 60)
+    walk.wait(lambda: walk.window.desk.background.is_idle, "the sessions are compared", HANG_S)
     _keep(walk, path)
     page.press_primary()
 
 
 def _keep(walk: Walk, path: Path) -> None:
     let_work(0.3)
-    walk.wait(lambda: walk.window.desk.background.is_idle, "the page is loaded", 60)
-    walk.wait_for_work("the page's work", 60)
+    walk.wait(lambda: walk.window.desk.background.is_idle, "the page is loaded", HANG_S)
+    walk.wait_for_work("the page's work", HANG_S)
     let_work(_SETTLING_S)
     walk.window.grab().save(str(path))
     with Image.open(path) as picture:
