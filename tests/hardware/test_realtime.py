@@ -12,6 +12,9 @@ import pytest
 from hardware.realtime import take_precedence
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.robots.ur.bench import HOME, Bench, bent_way, driver
+from tests.patience import HANG_S
+
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 
 def in_a_thread(function):
@@ -62,5 +65,5 @@ def test_an_arm_keeps_its_pace_on_a_busy_machine(busy):
     ):
         bench = Bench(controller, robot)
         began_s = bench.truth()["time_s"]
-        robot.follow(way).wait(20)
+        robot.follow(way).wait(HANG_S)
         assert way.duration_s < bench.truth()["time_s"] - began_s < way.duration_s + 0.5

@@ -18,7 +18,7 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 
 pytest.importorskip("rtde_control")
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 SAID = "is not the one with which the real was calibrated"
 
 

@@ -18,6 +18,9 @@ from hardware.cell.settings import ARMS
 from hardware.errors import RobotUnreachable
 from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.ur_controller.process import ControllerProcess
+from tests.patience import HANG_S
+
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 SETTINGS = read_cell()
 REAL = read_cell(SIMULATED_CELL.with_name("ur5_example.toml"))
@@ -65,7 +68,7 @@ def test_the_simulated_arm_moves_and_grips_as_fast_as_wanted(
         expected = flange_pose(ARMS[model], HOME) @ settings.gripper.grasp_pose
         np.testing.assert_allclose(state.T_base_tool, expected, atol=1e-6)
         began_s = time.monotonic()
-        arm.robot.follow(way).wait(10)
+        arm.robot.follow(way).wait(HANG_S)
         took_s = time.monotonic() - began_s
         np.testing.assert_allclose(arm.robot.state().joints_rad, way.end_rad, atol=1e-3)
         arm.gripper.close()
@@ -83,14 +86,14 @@ def test_it_may_begin_elsewhere_and_be_entered_again() -> None:
     for _ in range(2):
         with arm:
             np.testing.assert_allclose(arm.robot.state().joints_rad, joints, atol=1e-9)
-            arm.robot.move_joints([joints, HOME], 1.0, 4.0).wait(5)
+            arm.robot.move_joints([joints, HOME], 1.0, 4.0).wait(HANG_S)
 
 
 def test_the_real_arm_is_the_one_at_the_address() -> None:
     with ControllerProcess(joints_rad=HOME) as controller, open_arm(real_at(controller.address)) as arm:
         assert arm.controller is None
         assert arm.robot.name == f"UR5 at {controller.address}"
-        arm.robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(5)
+        arm.robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(HANG_S)
         arm.gripper.close()
         assert '"tool_outputs": [true, false]' in controller.command("state")
     with pytest.raises(RobotUnreachable, match="Nobody answers"), open_arm(real_at("127.83.11.8")):

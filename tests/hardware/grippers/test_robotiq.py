@@ -14,9 +14,9 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from hardware.simulation.ur_controller.robotiq import OBJECT_M
 from tests.awake import AwakeClock
 from tests.hardware.robots.ur.bench import HOME, Bench, bent_way, driver
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 
@@ -88,7 +88,7 @@ def test_what_is_lost_on_the_way_stops_the_arm(
         began_s = clock.now_s()
         bench.controller.command(fault)
         with pytest.raises(error, match=said):
-            move.wait(20)
+            move.wait(HANG_S)
         wait_until(lambda: not bench.is_moving())
         # a gripper that is silent is so after the 0.25 s that an answer may take
         assert clock.now_s() - began_s < STANDS_WITHIN_S + (0.25 if fault == "hand silent" else 0.0)
@@ -107,7 +107,7 @@ def test_a_link_that_is_lost_for_a_moment_stops_the_arm_and_is_opened_again(
     move = bench.begin("follow")
     bench.controller.command("drop robotiq")
     with pytest.raises(GripperError, match="does not answer"):
-        move.wait(20)
+        move.wait(HANG_S)
     bench.works_again()
     with pytest.raises(GripperError):
         _ = gripper.is_holding  # its own connection was dropped, too
@@ -117,14 +117,14 @@ def test_a_link_that_is_lost_for_a_moment_stops_the_arm_and_is_opened_again(
 def test_what_is_lost_at_rest_is_said_before_the_next_move(hand: tuple[Bench, RobotiqGripper]) -> None:
     bench, gripper = hand
     gripper.close()
-    bench.robot.follow(bent_way(0.8)).wait(20)
+    bench.robot.follow(bent_way(0.8)).wait(HANG_S)
     bench.controller.command("hand empty")
     wait_until(lambda: not gripper.is_holding)
     here = bench.joints()
 
     def refused() -> bool:
         try:
-            bench.robot.move_joints([here, here], 1.0, 1.0).wait(5)
+            bench.robot.move_joints([here, here], 1.0, 1.0).wait(HANG_S)
         except ObjectLost:
             return True
         return False
@@ -142,7 +142,7 @@ def test_an_empty_hand_may_move_and_an_opened_one_has_lost_nothing(
     gripper.open()
     bench.controller.command("hand empty")
     gripper.close()
-    bench.robot.follow(bent_way(0.8)).wait(20)
+    bench.robot.follow(bent_way(0.8)).wait(HANG_S)
     assert bench.robot.stopped_by() is None
 
 
@@ -156,7 +156,7 @@ def test_a_driver_that_is_started_with_the_cup_in_the_hand_watches_it(
     move = bench.begin("follow")
     bench.controller.command("hand empty")
     with pytest.raises(ObjectLost):
-        move.wait(20)
+        move.wait(HANG_S)
     bench.works_again()
 
 

@@ -9,7 +9,7 @@ from hardware.errors import ObjectLost
 from tests.hardware.pouring.rig import Rig
 from tests.patience import HANG_S
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 pytest.importorskip("rtde_control")
 

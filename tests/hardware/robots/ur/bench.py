@@ -18,7 +18,7 @@ from hardware.robots.ur.link import UrMove
 from hardware.robots.ur.robot import UR5Robot
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import AwakeClock
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
 
 HOME = np.array([0.2, -1.6, 1.4, -1.5, -1.5, 0.1])
 NEAR = HOME + np.array([0.2, -0.1, 0.1, 0.15, -0.1, 0.2])
@@ -103,7 +103,7 @@ class Bench:
             wait_until(lambda: not self.is_moving())
             self.robot.recover()
             move = self.robot.move_joints([self.joints(), HOME], 3.0, 10.0)
-        move.wait(10)
+        move.wait(HANG_S)
 
     def works_again(self) -> None:
         """Recover, and see that nothing of the past goes on and that the next move arrives."""
@@ -111,5 +111,5 @@ class Bench:
         self.robot.recover()
         assert self.stays_where_it_is(0.1)
         np.testing.assert_allclose(self.joints(), before, atol=1e-4)
-        self.robot.move_joints([before, before - 0.1], SPEED, ACCELERATION).wait(10)
+        self.robot.move_joints([before, before - 0.1], SPEED, ACCELERATION).wait(HANG_S)
         np.testing.assert_allclose(self.joints(), before - 0.1, atol=1e-3)

@@ -40,7 +40,9 @@ from tests.hardware.robots.ur.bench import (
     bent_way,
     driver,
 )
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
+
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 NOBODYS_PORT = 30002
 EMPTY_ADDRESS = f"127.83.{os.getpid() % 256}.7"
@@ -127,7 +129,7 @@ def test_an_arms_own_kinematics_are_read_and_used() -> None:
             np.testing.assert_allclose(state.T_base_flange @ T_FLANGE_TOOL, state.T_base_tool, atol=1e-9)
             apart_m = np.linalg.norm((flange_pose(UR5, state.joints_rad) - state.T_base_flange)[:3, 3])
             assert apart_m == pytest.approx(0.008)
-            robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(10)
+            robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(HANG_S)
             robot.recover()
             assert robot.kinematics is read, "read once"
 
@@ -178,7 +180,7 @@ def test_what_was_switched_off_is_recovered_without_having_been_connected() -> N
         with pytest.raises(RobotNotReady):
             robot.__enter__()
         robot.recover()
-        robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(5)
+        robot.move_joints([HOME, HOME + 0.1], 1.0, 4.0).wait(HANG_S)
         np.testing.assert_allclose(Bench(controller, robot).joints(), HOME + 0.1, atol=1e-3)
         robot.__exit__(None, None, None)
 
@@ -231,7 +233,7 @@ def test_looking_at_an_arm_that_is_driven_disturbs_nothing(bench: Bench) -> None
     assert written(bench.controller)[: len(before)] == before
     assert not any(entry["what"] == "script" for entry in written(bench.controller)[len(before) :])
     assert bench.truth()["tool_voltage_v"] == 24
-    move.wait(20)
+    move.wait(HANG_S)
 
 
 def test_the_tools_voltage_is_set_when_nothing_is_held(controller: ControllerProcess) -> None:

@@ -28,7 +28,9 @@ from tests.hardware.robots.ur.bench import (
     Bench,
     bent_way,
 )
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
+
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 
 def watch(bench: Bench, is_over: threading.Event, states: list[RobotState]) -> None:
@@ -81,7 +83,7 @@ def test_a_path_is_driven_from_corner_to_corner_in_its_time(either_bench: Bench)
     move = either_bench.robot.move_joints([HOME, corner, corner, NEAR], SPEED, ACCELERATION)
     watcher = threading.Thread(target=watch, args=(either_bench, move._is_over, states))
     watcher.start()
-    move.wait(10)
+    move.wait(HANG_S)
     took_s = either_bench.truth()["time_s"] - began_s
     watcher.join()
     ways = [0.3, np.abs(NEAR - corner).max()]
@@ -118,7 +120,7 @@ def test_a_timed_motion_is_followed_on_its_way_and_in_its_time(either_bench: Ben
     move = either_bench.robot.follow(way)
     watcher = threading.Thread(target=watch, args=(either_bench, move._is_over, states))
     watcher.start()
-    move.wait(10)
+    move.wait(HANG_S)
     took_s = either_bench.truth()["time_s"] - began_s
     watcher.join()
     assert way.duration_s < took_s < way.duration_s + 0.5
@@ -139,7 +141,7 @@ def test_stopped_from_another_thread_it_stands_in_a_fifth_of_a_second(
 
     def wait() -> None:
         try:
-            move.wait(20)
+            move.wait(HANG_S)
         except RobotError as error:
             errors.append(error)
 
@@ -201,7 +203,7 @@ def test_a_moving_arm_takes_no_second_motion(bench: Bench) -> None:
     wait_until(bench.is_moving)
     with pytest.raises(RobotError, match="still moving"):
         bench.robot.follow(bent_way())
-    first.wait(10)
+    first.wait(HANG_S)
     np.testing.assert_allclose(bench.joints(), NEAR, atol=1e-3)
 
 
@@ -215,7 +217,7 @@ def test_who_waits_too_briefly_is_told(bench: Bench) -> None:
     move = bench.robot.move_joints([HOME, NEAR], SPEED, ACCELERATION)
     with pytest.raises(RobotError, match=r"did not arrive within 0\.01 s"):
         move.wait(0.01)
-    move.wait(10)
+    move.wait(HANG_S)
 
 
 def test_the_speed_slider_stretches_both_kinds_of_motion(bench: Bench) -> None:
@@ -224,9 +226,9 @@ def test_the_speed_slider_stretches_both_kinds_of_motion(bench: Bench) -> None:
         wait_until(lambda: bench.robot.state().speed_scaling == 0.5)
         way = bent_way(0.5)
         began_s = bench.truth()["time_s"]
-        bench.robot.follow(way).wait(10)
+        bench.robot.follow(way).wait(HANG_S)
         assert bench.truth()["time_s"] - began_s > 1.9 * way.duration_s
-        bench.robot.move_joints([NEAR, HOME], SPEED, ACCELERATION).wait(10)
+        bench.robot.move_joints([NEAR, HOME], SPEED, ACCELERATION).wait(HANG_S)
     finally:
         bench.controller.command("slider 1")
         wait_until(lambda: bench.robot.state().speed_scaling == 1)
@@ -254,7 +256,7 @@ def test_the_gripper_works_while_the_arm_moves(bench: Bench) -> None:
         gripper.close()
         gripper.open()
     assert not move.is_done
-    move.wait(10)
+    move.wait(HANG_S)
     np.testing.assert_allclose(bench.joints(), NEAR, atol=1e-3)
 
 

@@ -29,7 +29,7 @@ from tests.hardware.robots.ur.bench import (
     bent_way,
     driver,
 )
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
@@ -46,7 +46,7 @@ def stops_with(bench: Bench, kind: str, fault: str, error: type[RobotError], sai
     began_s = time.monotonic()
     in_time(bench.seconds_to_rest(), STANDS_WITHIN_S, "coming to rest")
     with pytest.raises(error, match=said) as caught:
-        move.wait(5)
+        move.wait(HANG_S)
     assert type(caught.value) is error
     in_time(time.monotonic() - began_s, STANDS_WITHIN_S + 0.5, "being told")
     assert move.is_done
@@ -118,7 +118,7 @@ def test_local_control_is_named() -> None:
         controller.command("local")
         controller.command("program stop")
         with pytest.raises(NotInRemoteControl, match="choose remote control"):
-            move.wait(5)
+            move.wait(HANG_S)
         with pytest.raises(NotInRemoteControl, match="choose remote control"):
             robot.recover()
         controller.command("remote")
@@ -131,7 +131,7 @@ def test_a_lost_link(bench: Bench, kind: str, fault: str) -> None:
     began_s = time.monotonic()
     bench.controller.command(fault)
     with pytest.raises(RobotLost, match=r"look at the arm .* recover"):
-        move.wait(5)
+        move.wait(HANG_S)
     in_time(time.monotonic() - began_s, 0.7, "being noticed")
     in_time(bench.seconds_to_rest(), STANDS_WITHIN_S, "coming to rest")
     with pytest.raises(RobotLost):
@@ -160,8 +160,8 @@ def test_a_link_that_is_lost_while_the_arm_stands_is_noticed(bench: Bench) -> No
 
 def test_a_slow_and_uneven_link_does_not_matter(bench: Bench) -> None:
     bench.controller.command("latency 30 20")
-    bench.robot.follow(bent_way(0.8)).wait(20)
-    bench.robot.move_joints([NEAR, HOME], 1.0, 4.0).wait(20)
+    bench.robot.follow(bent_way(0.8)).wait(HANG_S)
+    bench.robot.move_joints([NEAR, HOME], 1.0, 4.0).wait(HANG_S)
     move = bench.begin("follow")
     bench.robot.stop()
     in_time(bench.seconds_to_rest(), STANDS_WITHIN_S, "coming to rest")
@@ -209,7 +209,7 @@ def test_another_program_that_takes_over_is_noticed_and_the_arm_stands(
         began_s = clock.now_s()
         bench.controller.command(fault)
         with pytest.raises(RobotError):
-            move.wait(5)
+            move.wait(HANG_S)
         if kind == "follow":  # all that is driven to scan and to pour
             limit_s = NOTICED_MOVING_S if fault == "foreign moving" else NOTICED_WITHIN_S
             in_time(clock.now_s() - began_s, limit_s, "being noticed")
@@ -224,7 +224,7 @@ def test_a_control_thread_that_is_stuck_is_noticed(bench: Bench) -> None:
     with within(NOTICED_WITHIN_S):
         bench.controller.command("program hangs")
         with pytest.raises(RobotError):
-            move.wait(5)
+            move.wait(HANG_S)
     wait_until(lambda: bench.truth()["runtime_state"] == "STOPPED", STANDS_WITHIN_S)
     assert bench.stays_where_it_is()
     bench.works_again()
@@ -239,4 +239,4 @@ def test_a_speed_slider_that_is_moved_is_no_fault(bench: Bench, slider: float) -
     bench.controller.command("slider 0")
     time.sleep(0.5)
     bench.controller.command("slider 1")
-    move.wait(20)
+    move.wait(HANG_S)

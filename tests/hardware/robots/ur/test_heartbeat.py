@@ -19,7 +19,7 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.robots.ur.bench import FAR, Bench, driver
 from tests.patience import wait_until
 
-pytestmark = pytest.mark.system
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
 LOOK_S = 0.01
 
@@ -79,6 +79,7 @@ import sys, time
 import numpy as np
 from core.motion.trajectory import JointTrajectory
 from tests.hardware.robots.ur.bench import FAR, HOME, driver
+from tests.patience import HANG_S
 
 times_s = np.arange(0, 9, 0.008)
 share = (1 - np.cos(np.pi * times_s / times_s[-1])) / 2
@@ -91,7 +92,7 @@ with driver(sys.argv[1]) as robot:
     sum(range(numbers))  # no thread of this process runs meanwhile
     held_s = time.monotonic() - began_s
     try:
-        move.wait(30)
+        move.wait(HANG_S)
         print("arrived", held_s, flush=True)
     except Exception as error:
         print(error, flush=True)

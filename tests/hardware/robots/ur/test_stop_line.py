@@ -17,6 +17,8 @@ from tests.awake import AwakeClock, in_time, within
 from tests.hardware.robots.ur.bench import HOME
 from tests.patience import wait_until
 
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
+
 
 @contextmanager
 def line_to(controller):

@@ -13,7 +13,7 @@ from core.motion.trajectory import JointTrajectory
 from hardware.errors import ProgramStopped, RobotError, TrackingLost
 from tests.awake import within
 from tests.hardware.robots.ur.bench import FAR, HOME, T_FLANGE_TOOL, Bench
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
@@ -57,7 +57,7 @@ def test_a_program_that_ends_while_the_arm_rests_is_not_taken_for_ours(bench: Be
 def test_resting_stops_nothing(bench: Bench) -> None:
     time.sleep(1.0)
     assert bench.robot.stopped_by() is None
-    bench.robot.move_joints([HOME, HOME - 0.05], 1.0, 4.0).wait(10)
+    bench.robot.move_joints([HOME, HOME - 0.05], 1.0, 4.0).wait(HANG_S)
     time.sleep(0.3)
     assert bench.robot.stopped_by() is None
 
@@ -69,7 +69,7 @@ def test_a_jump_beyond_the_plans_margin_is_noticed(bench: Bench, angle_rad: floa
     with within(STOPPED_WITHIN_S):
         bench.controller.command(f"jump 2 {angle_rad}")
         with pytest.raises(TrackingLost, match=r"mm beside its path, where its clearance leaves 4\.0 mm"):
-            move.wait(5)
+            move.wait(HANG_S)
         wait_until(lambda: not bench.is_moving())
     bench.works_again()
 
@@ -83,7 +83,7 @@ def test_a_program_that_stands_is_noticed_early_in_a_move_too(
     with within(STOPPED_WITHIN_S):
         either_bench.controller.command("foreign still")
         with pytest.raises(TrackingLost):
-            move.wait(5)
+            move.wait(HANG_S)
     wait_until(lambda: either_bench.truth()["runtime_state"] == "STOPPED", 1)
     either_bench.works_again()
 
@@ -92,22 +92,22 @@ def test_a_program_that_stands_is_noticed_early_in_a_move_too(
 def test_a_late_arm_is_not_taken_for_one_that_stands(bench: Bench, latency: str) -> None:
     bench.robot.follow(long_way(bench.joints()), margin(0.01)).wait(20)  # a quick link's lag is known then
     bench.controller.command(latency)
-    bench.robot.follow(long_way(HOME).reversed()).wait(20)
-    bench.robot.follow(long_way(bench.joints())).wait(20)
+    bench.robot.follow(long_way(HOME).reversed()).wait(HANG_S)
+    bench.robot.follow(long_way(bench.joints())).wait(HANG_S)
 
 
 def test_a_plan_with_little_margin_is_followed_to_its_end(either_bench: Bench) -> None:
-    either_bench.robot.follow(long_way(either_bench.joints()), margin(0.001)).wait(20)
+    either_bench.robot.follow(long_way(either_bench.joints()), margin(0.001)).wait(HANG_S)
 
 
 def test_a_program_that_moves_nearly_along_the_path_is_noticed_by_the_margin(bench: Bench) -> None:
     bench.robot.follow(long_way(bench.joints()), margin(0.004)).wait(20)  # its usual lag is known then
-    bench.robot.move_joints([bench.joints(), HOME], 3.0, 10.0).wait(20)
+    bench.robot.move_joints([bench.joints(), HOME], 3.0, 10.0).wait(HANG_S)
     move = bench.robot.follow(long_way(bench.joints()), margin(0.004))
     wait_until(lambda: np.abs(bench.truth()["speeds_rad_s"]).max() > 0.5)
     with within(STOPPED_WITHIN_S):
         bench.controller.command("foreign moving")
         with pytest.raises(RobotError):
-            move.wait(5)
+            move.wait(HANG_S)
     wait_until(lambda: not bench.is_moving(), 1)
     bench.works_again()

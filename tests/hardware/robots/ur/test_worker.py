@@ -18,7 +18,7 @@ from hardware.errors import RobotError, RobotLost, RobotStopped
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.awake import in_time, within
 from tests.hardware.robots.ur.bench import FAR, HOME, STANDS_WITHIN_S, Bench, driver
-from tests.patience import wait_until
+from tests.patience import HANG_S, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.punctual]
 
@@ -42,7 +42,7 @@ def test_in_a_move_it_is_noticed_and_the_arm_stands(bench: Bench, number: int, k
         with within(NOTICED_WITHIN_S, "being noticed"):
             os.kill(worker, number)
             with pytest.raises(RobotLost, match="recover"):
-                move.wait(5)
+                move.wait(HANG_S)
         wait_until(lambda: not bench.is_moving())
     assert not psutil.pid_exists(worker)
     assert bench.stays_where_it_is()
@@ -66,7 +66,7 @@ def test_a_machine_that_stood_still_is_no_fault(bench: Bench, kind: str) -> None
     everything = " ".join(map(str, [bench.controller.pid, worker_of(bench), os.getpid()]))
     command = f"kill -STOP {everything}; sleep {STANDS_STILL_S}; kill -CONT {everything}"
     subprocess.run(["sh", "-c", command], check=True)
-    move.wait(10)
+    move.wait(HANG_S)
     assert np.allclose(bench.joints(), FAR, atol=5e-3), "it went on to where it was sent"
 
 
@@ -158,7 +158,7 @@ with driver(sys.argv[1]) as robot:
     move = robot.follow(JointTrajectory(times_s, HOME + np.outer(share, FAR - HOME)))
     print("moves", flush=True)
     try:
-        move.wait(30)
+        move.wait(HANG_S)
     except Exception as error:
         print(type(error).__name__, error, flush=True)
     try:

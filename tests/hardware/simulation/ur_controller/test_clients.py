@@ -13,6 +13,8 @@ from hardware.robots.joint_motion import Trapezoid
 from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.simulation.ur_controller import clients
 
+pytestmark = [pytest.mark.system, pytest.mark.punctual]
+
 pytest.importorskip("rtde_control", reason="needs ur-rtde")
 
 PAUSED, STOPPED = 4, 1
