@@ -105,6 +105,22 @@ def check(
 
 
 @cell.command()
+def touch(
+    name: NameArgument,
+    tip_mm: Annotated[
+        Optional[tuple[float, float, float]],  # noqa: UP045
+        typer.Option(
+            "--tip-mm", metavar="X Y Z", help="The tip in the flange frame; the middle of the grip at first."
+        ),
+    ] = None,
+) -> None:
+    """Compare where the camera has a corner of the checked board with the hand's tip, guided onto it."""
+    from app.cli import cell_commands
+
+    raise typer.Exit(0 if cell_commands.touch(name, tip_mm) else 1)
+
+
+@cell.command()
 def devices(name: NameArgument) -> None:
     """Try arm and camera, without moving anything."""
     from app.cli import cell_commands

@@ -16,11 +16,13 @@ from app.operations.calibration import check as checking
 from app.operations.calibration import devices as devices_of_cell
 from app.operations.calibration import reference as referring
 from app.operations.calibration import table as measuring
+from app.operations.calibration import touch as touching
 from app.operations.calibration import views as choosing_views
 from app.operations.calibration.capture import CaptureObserver
 from app.operations.calibration.crop import enter_crop_box
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Look
+from core.calibration.touching import MOST_OFF_M
 from core.errors import Cancelled, InputError
 from hardware.cell import CellSettings, read_cell
 
@@ -111,6 +113,25 @@ def check(name: str, is_confirmed: bool) -> bool:
     if not found.agreement.is_good:
         print("The calibration does not hold: calibrate anew, and see that camera and board are fixed.")
     return found.agreement.is_good
+
+
+def touch(name: str, tip_mm: tuple[float, float, float] | None) -> bool:
+    """Read a touched corner, and return whether the calibration holds."""
+    found = touching.read_touch(_path(name), None if tip_mm is None else np.array(tip_mm) / MM)
+    x, y, z = found.touch.off_m * MM
+    distance_mm, number = found.touch.distance_m * MM, found.touch.corner + 1
+    print(
+        f"The tip is {distance_mm:.1f} mm beside where the camera has corner {number} of the board: "
+        f"({x:+.1f}, {y:+.1f}, {z:+.1f}) mm along the axes of the arm's base.\n"
+        f"With 95 % the calibration is off by at most {found.expected_m * MM:.1f} mm; what the arm and the "
+        "tip's measures are off comes on top."
+    )
+    if not found.touch.is_good:
+        print(
+            f"More than {MOST_OFF_M * MM:g} mm: see that the tip is measured right and the board was not "
+            "moved, and touch the corner again; if it stays so, calibrate anew."
+        )
+    return found.touch.is_good
 
 
 def devices(name: str) -> bool:

@@ -38,7 +38,7 @@ def facing_board(cell: Cell, board: BoardSpec) -> Cell:
     if not settings.has_simulated_object:
         return replace(cell, scene=scene)
     simulation = settings.simulation
-    set_up = simulation.set_up or _as_believed(settings)
+    set_up = simulated_set_up(settings)
     camera = SimulatedBoardCamera(
         _empty_world(settings),
         cell.robot,
@@ -55,7 +55,9 @@ def _empty_world(settings: CellSettings) -> World:
     return World(None, np.array([*place.platform_center_m[:2], place.table_height_m]))
 
 
-def _as_believed(settings: CellSettings) -> SetUp:
-    """The set-up of a simulated cell whose file says nothing of it: the camera hangs where it should."""
+def simulated_set_up(settings: CellSettings) -> SetUp:
+    """Return what a simulated cell really is; where its file says nothing of it, it is as believed."""
+    if settings.simulation.set_up is not None:
+        return settings.simulation.set_up
     x, y, z = settings.place.platform_center_m.tolist()
     return SetUp(T_flange_camera=settings.camera.T_flange_camera, board_middle_m=(x, y, z + 0.004))

@@ -47,12 +47,12 @@ def guided_joints_rad(settings: CellSettings) -> FloatArray:
     """
     if not settings.robot.is_real:
         raise InputError(
-            f"The arm of the {settings.name} is simulated, and nobody can guide it by hand; type where the "
-            "cup stands."
+            f"The arm of the {settings.name} is simulated, and nobody can guide it by hand; type the "
+            "place instead."
         )
     seen = glance(_address(settings))
     if seen.is_moving:
-        raise RobotError("The arm moves; let it come to rest where its hand holds the cup, then read again.")
+        raise RobotError("The arm moves; let it come to rest where it was guided to, then read again.")
     return np.array(seen.joints_rad)
 
 

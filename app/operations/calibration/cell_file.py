@@ -26,6 +26,7 @@ CELLS_VARIABLE = "POURSIGHT_CELLS"
 """The environment variable that names another folder."""
 _REAL_CELL = CELL_FOLDER / "ur5_example.toml"
 _BOARD_OFF_PLATFORM_M = (0.03, -0.02, 0.004)
+_OF_ARM = ("kinematics_checksum", "own_kinematics")
 _DIGITS = 9
 _LONGEST_NAME = 100
 """Sentences name a cell."""
@@ -108,20 +109,32 @@ def write_hand_eye(path: Path, T_flange_camera: FloatArray, kinematics: Kinemati
         InputError: the file cannot be read, or would be no cell any more; it stays as it was.
         SessionError: it cannot be written; it stays as it was.
     """
+    arm: dict[str, Any] = {}
+    if kinematics is not None and kinematics.checksum and kinematics.measured is not None:
+        links = {name: list(getattr(kinematics.measured, name)) for name in LinkSettings.model_fields}
+        arm = {"kinematics_checksum": kinematics.checksum, "own_kinematics": links}
+    write_former_hand_eye(path, T_flange_camera, arm)
+
+
+def write_former_hand_eye(path: Path, T_flange_camera: FloatArray, arm: dict[str, Any]) -> None:
+    """Put back a hand-eye pose, and what `arm_table` had of the arm by which it was found; see above."""
 
     def change(document: tomlkit.TOMLDocument) -> None:
         _table(document, "camera")["T_flange_camera"] = _matrix(T_flange_camera)
         robot = _table(document, "robot")
-        for name in ("kinematics_checksum", "own_kinematics"):
+        for name in _OF_ARM:
             robot.pop(name, None)
-        if kinematics is not None and kinematics.checksum and kinematics.measured is not None:
-            robot["kinematics_checksum"] = kinematics.checksum
-            links = tomlkit.table()
-            for name in LinkSettings.model_fields:
-                links[name] = list(getattr(kinematics.measured, name))
-            robot["own_kinematics"] = links
+            value = arm.get(name)
+            if value is not None:
+                robot[name] = tomlkit.item(value)
 
     _changed(path, change)
+
+
+def arm_table(settings: CellSettings) -> dict[str, Any]:
+    """Return what a cell's file has of the arm by which its hand-eye pose was found; nothing: not known."""
+    table: dict[str, Any] = settings.robot.model_dump(mode="json", include=set(_OF_ARM))
+    return {name: value for name, value in table.items() if value is not None}
 
 
 def write_place(path: Path, places: dict[str, Any]) -> None:

@@ -19,10 +19,12 @@ from app.operations.calibration.around import (
 from app.operations.calibration.capture import NOBODY, CaptureObserver
 from app.operations.calibration.provenance import RESULT, now, versions
 from app.operations.scan_run import ScanOperator
-from core.calibration.checking import Agreement, check_agreement
+from core.calibration.checking import Agreement, check_agreement, locate_board
 from core.files import write_json
+from core.geometry import FloatArray
 from core.progress import Reporter
 from core.session import explained
+from hardware.cell.settings import CellSettings
 
 _SIMULATED_MOVE_M, _SIMULATED_TURN_RAD = np.array([-0.05, 0.04, 0.004]), 2.2
 
@@ -67,12 +69,22 @@ def check_cell(
         calibrated, cell_file, step_names.CHECK, reporter, operator, moved, observer, N_VIEWS
     ) as capture:
         if settings.has_simulated_object:
-            middle_m = settings.place.platform_center_m + _SIMULATED_MOVE_M
-            lay_simulated_board(capture.cell, middle_m, _SIMULATED_TURN_RAD)
+            lay_simulated_board(capture.cell, *simulated_place(settings))
         views = look_around(capture)
     fit = calibrated.fit(capture.collection.intrinsics)
     found = Check(capture.folder, len(views), check_agreement(fit, views, board))
-    result = {"time": now(), "n_views": found.n_views, "agreement": asdict(found.agreement)}
+    T_base_board, _ = locate_board(fit, views, board)
+    result = {
+        "time": now(),
+        "n_views": found.n_views,
+        "agreement": asdict(found.agreement),
+        "T_base_board": T_base_board.tolist(),
+    }
     with explained(found.folder):
         write_json(found.folder / RESULT, result | capture.facts | {"versions": versions()})
     return found
+
+
+def simulated_place(settings: CellSettings) -> tuple[FloatArray, float]:
+    """Return where a simulated board is laid for a check: its middle (3,) and its turn about the vertical."""
+    return settings.place.platform_center_m + _SIMULATED_MOVE_M, _SIMULATED_TURN_RAD

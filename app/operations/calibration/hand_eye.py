@@ -17,9 +17,10 @@ from app.operations.calibration.capture import (
     find_board,
     take_rounds,
 )
-from app.operations.calibration.cell_file import write_hand_eye
+from app.operations.calibration.cell_file import arm_table, write_hand_eye
 from app.operations.calibration.provenance import (
     RESULT,
+    discard_run,
     interrupted_run,
     now,
     read_boards,
@@ -116,7 +117,11 @@ def calibrate_cell(
     ) as capture:
         if before is not None:
             known, looks = before
-            _refuse_other_devices(known, capture.facts)
+            try:
+                _refuse_other_devices(known, capture.facts)
+            except StageError:
+                discard_run(capture.folder)
+                raise
             capture.adopt(looks)
         if not any(look.view is not None for look in capture.collection.looks):
             find_board(capture)
@@ -158,7 +163,7 @@ def conclude(cell_file: Path, settings: CellSettings, capture: Capture) -> Calib
         capture.folder, len(views), len(capture.collection.looks) - len(views), stated, held_out,
         rotations.sentence, float(np.linalg.norm(change[3:])), float(np.linalg.norm(change[:3])),
     )  # fmt: skip
-    table = _result_table(found, fit, settings.camera.pose, board) | capture.facts
+    table = _result_table(found, fit, settings, board) | capture.facts
     with explained(capture.folder):
         write_json(capture.folder / RESULT, table)
     write_hand_eye(cell_file, fit.T_flange_camera, kinematics)
@@ -224,12 +229,13 @@ def _refuse_poor(stated: Bounds, held_out: HeldOut, rotations: str) -> None:
 
 
 def _result_table(
-    found: Calibration, fit: HandEyeFit, before: FloatArray, board: BoardSpec
+    found: Calibration, fit: HandEyeFit, before: CellSettings, board: BoardSpec
 ) -> dict[str, Any]:
     noise = fit.noise
     return {
         "time": now(),
-        "before": before.tolist(),
+        "before": before.camera.pose.tolist(),
+        "arm_before": arm_table(before),
         "after": fit.T_flange_camera.tolist(),
         "T_base_board": fit.rig.T_base_board.tolist(),
         "covariance": fit.covariance.tolist(),

@@ -7,6 +7,7 @@ taken.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime, timezone
@@ -115,6 +116,16 @@ def new_run(cell: Path, step: str) -> Path:
         folder = root / f"{max(numbers, default=0) + 1:04d}"
         folder.mkdir()
     return folder
+
+
+def discard_run(folder: Path) -> None:
+    """Take back a run in which nothing was done yet.
+
+    Raises:
+        SessionError: the disk refuses.
+    """
+    with explained(folder.parent):
+        shutil.rmtree(folder)
 
 
 def interrupted_run(cell: Path, step: str) -> Path | None:

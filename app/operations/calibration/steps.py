@@ -23,11 +23,13 @@ from app.operations.calibration.provenance import (
     write_boards,
 )
 from app.operations.calibration.table import is_in_file
+from app.operations.calibration.touch import read_touches
 from app.operations.calibration.views import are_for, are_in_file
 from core.calibration.board import BoardSpec
 from core.calibration.checking import MOST_RATIO
 from core.calibration.drift import Drift
 from core.calibration.printing import write_board_pdf
+from core.calibration.touching import MOST_OFF_M
 from core.files import make_folder, reading
 from core.session import explained
 from hardware.cell import read_cell
@@ -168,6 +170,12 @@ def _check(cell_file: Path) -> Step:
             f"{agreement['worst_m'] * 1000:.2f} mm); {agreement['ratio']:.1f} times what is expected"
         )
         time, hand_eye, is_good = str(table["time"]), table["hand_eye"], agreement["ratio"] <= MOST_RATIO
+    touches = read_touches(folder)
+    if touches:
+        off_m = max(float(np.linalg.norm(touch["off_m"])) for touch in touches)
+        n = len(touches)
+        figure += f"; {n} corner{'s' if n > 1 else ''} touched, at most {off_m * 1000:.1f} mm beside"
+        is_good = is_good and off_m <= MOST_OFF_M
     if not _is_by_present_camera(cell_file, hand_eye):
         return Step(
             step_names.CHECK, StepState.STALE, "the calibration that was checked is not the present one", time

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from app.operations.calibration import step_names
-from app.operations.calibration.cell_file import write_cup, write_hand_eye, write_views
+from app.operations.calibration.cell_file import write_cup, write_former_hand_eye, write_views
 from app.operations.calibration.cup_entry import is_cup_in_file
 from app.operations.calibration.hand_eye import is_same
 from app.operations.calibration.provenance import RESULT, latest_result, read_boards, withdraw, write_boards
@@ -26,20 +26,27 @@ class _Writing:
 
     Attributes:
         is_there: whether the file still holds what the step's record calls `after`.
-        write: puts the record's `before` back.
+        write: puts back what the record, a table, says was there before.
     """
 
     is_there: Callable[[CellSettings, Any], bool]
-    write: Callable[[Path, Any], None]
+    write: Callable[[Path, dict[str, Any]], None]
+
+
+def _put_back(write: Callable[[Path, Any], None]) -> Callable[[Path, dict[str, Any]], None]:
+    return lambda path, table: write(path, table["before"])
 
 
 _WRITINGS = {
     step_names.HAND_EYE: _Writing(
-        lambda settings, after: is_same(after, settings.camera.pose), write_hand_eye
+        lambda settings, after: is_same(after, settings.camera.pose),
+        lambda path, table: write_former_hand_eye(path, table["before"], dict(table.get("arm_before", {}))),
     ),
-    step_names.TABLE: _Writing(lambda settings, after: is_in_file(settings.place, after), write_former_place),
-    step_names.VIEWS: _Writing(are_in_file, write_views),
-    step_names.CUP: _Writing(is_cup_in_file, write_cup),
+    step_names.TABLE: _Writing(
+        lambda settings, after: is_in_file(settings.place, after), _put_back(write_former_place)
+    ),
+    step_names.VIEWS: _Writing(are_in_file, _put_back(write_views)),
+    step_names.CUP: _Writing(is_cup_in_file, _put_back(write_cup)),
 }
 
 
@@ -60,7 +67,7 @@ def undo(cell_file: Path, step: str) -> None:
     if step in _WRITINGS:
         writing = _WRITINGS[step]
         with reading(folder / RESULT):
-            before, time = table["before"], table["time"]
+            time = table["time"]
             is_there = writing.is_there(read_cell(cell_file), table["after"])
         if not is_there:
             raise InputError(
@@ -68,7 +75,7 @@ def undo(cell_file: Path, step: str) -> None:
                 "correct them there."
             )
         with reading(folder / RESULT):
-            writing.write(cell_file, before)
+            writing.write(cell_file, table)
     withdraw(folder)
 
 

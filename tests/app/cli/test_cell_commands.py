@@ -107,6 +107,7 @@ def test_a_crop_box_is_entered_and_views_have_to_be_chosen_anew(poursight):
         (("new", "?!"), "needs a name"),
         (("calibrate", "bench"), "No calibration board is entered"),
         (("check", "bench"), "No calibration board is entered"),
+        (("touch", "bench"), "No calibration board is entered"),
         (("table", "bench", "--yes"), "No calibration board is entered"),
         (("board", "bench", "--dictionary=7X7"), "dictionary"),
         (("board", "bench", "--columns=60"), "take 4 to 20 each way"),
@@ -239,4 +240,4 @@ def test_kill_9_in_the_middle_keeps_every_look_and_the_same_command_goes_on(pour
     code, out, _ = poursight("cell", "reference", "bench", "--yes")
     assert code == 0 and "looked at again when a scan begins" in out
     code, out, _ = poursight("cell", "views", "bench", "--n=8")
-    assert code == 0 and out.startswith("8 views from ")
+    assert code == 0 and out.startswith("8 views at elevations of ")

@@ -7,7 +7,14 @@ from app.jobs.scan_work import planned_pose
 from app.operations.calibration import step_names
 from app.operations.calibration.camera_error import camera_error
 from app.operations.calibration.capture import CaptureObserver
-from app.operations.calibration.cell_file import cell_path, new_cell, write_hand_eye, write_views
+from app.operations.calibration.cell_file import (
+    arm_table,
+    cell_path,
+    new_cell,
+    write_former_hand_eye,
+    write_hand_eye,
+    write_views,
+)
 from app.operations.calibration.check import check_cell
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import VIEWS, read_looks, runs
@@ -192,8 +199,11 @@ def test_an_arms_own_kinematics_are_kept_in_the_file_and_used_everywhere(seed):
         assert arm == own, "to the last digit"
     apart_m = np.linalg.norm((shown_views(settings) - views)[:, :3, 3], axis=1)
     assert 0.0005 < apart_m.max() < 0.03, "drawn where this arm brings the camera"
+    before = read_cell(path)
     write_hand_eye(path, settings.camera.pose)
     assert read_cell(path).robot.arm == UR5
+    write_former_hand_eye(path, before.camera.pose, arm_table(before))
+    assert read_cell(path) == before
 
 
 def shown_views(settings):
@@ -245,6 +255,7 @@ def test_looks_of_another_arm_or_camera_are_not_gone_on_with(fact, device):
         assert refusal.value.remedy is Remedy.RESTART_CALIBRATION
     assert n_new == [] and path.read_bytes() == before
     assert len(read_looks(begun)[1]) >= 2, "they are kept"
+    assert runs(path, step_names.HAND_EYE) == [begun], "a refusal leaves no run"
     interrupted_after(path, 1, is_restarted=True)
     assert len(read_looks(runs(path, step_names.HAND_EYE)[-1])[1]) < len(record["views"]), "left aside"
 

@@ -16,11 +16,13 @@ from app.operations.calibration.provenance import (
     VIEWS,
     BoardEntry,
     interrupted_run,
+    latest_result,
     read_boards,
     read_looks,
     runs,
 )
-from app.operations.calibration.steps import Step, steps
+from app.operations.calibration.steps import Step, StepState, steps
+from app.operations.calibration.touch import read_touches, usual_tip_m
 from core.motion.kinematics import flange_pose
 from core.scan.view_files import read_color
 
@@ -74,6 +76,8 @@ class CellContents:
         evidence: of those steps that have some, by name.
         board: that was entered last; none if none was.
         is_interrupted: whether a calibration was begun and not finished.
+        tip_m: (3,) in the flange frame, with which a corner of the board was touched last, or will be.
+        is_checked: whether it is known where the board lies: a corner may be touched.
     """
 
     path: Path | None
@@ -83,6 +87,8 @@ class CellContents:
     evidence: dict[str, Evidence] = field(default_factory=dict)
     board: BoardEntry | None = None
     is_interrupted: bool = False
+    tip_m: tuple[float, ...] = (0.0, 0.0, 0.0)
+    is_checked: bool = False
 
 
 def load_cell(key: CellKey) -> CellContents:
@@ -99,7 +105,25 @@ def load_cell(key: CellKey) -> CellContents:
     boards = read_boards(key.path)
     is_interrupted = interrupted_run(key.path, step_names.HAND_EYE) is not None
     board = boards[-1] if boards else None
-    return CellContents(key.path, shown, known, steps(key.path), evidence, board, is_interrupted)
+    cell_steps = steps(key.path)
+    states = {step.name: step.state for step in cell_steps}
+    return CellContents(
+        key.path,
+        shown,
+        known,
+        cell_steps,
+        evidence,
+        board,
+        is_interrupted,
+        _tip_m(key.path, key.settings),
+        states[step_names.CHECK] in (StepState.DONE, StepState.FAILED),
+    )
+
+
+def _tip_m(path: Path, settings: CellSettings) -> tuple[float, ...]:
+    checked = latest_result(path, step_names.CHECK)
+    touches = [] if checked is None else read_touches(checked[0])
+    return tuple(usual_tip_m(settings, touches).tolist())
 
 
 def _evidence(path: Path, step: str, settings: CellSettings) -> Evidence:

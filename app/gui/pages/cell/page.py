@@ -66,6 +66,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
             edited.connect(lambda low_m, high_m: self._work.enter_crop_box(low_m, high_m, self.report))
         cup = side.options.cup
         cup.read_wanted.connect(lambda: self._work.read_station(cup.show_station))
+        side.options.touch.read_wanted.connect(lambda: self._work.read_touch(side.options.touch.tip_m))
         desk.arm.changed.connect(self._show_arm)
         desk.jobs.event_received.connect(self._hear)
         for signal in (desk.jobs.finished, desk.jobs.failed):
@@ -93,6 +94,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         settings = self.desk.cell.settings
         if settings is not None:
             self.side.options.cup.show_entry(self.desk.cell.path, entry_of(settings), settings.robot.is_real)
+            self.side.options.touch.show_tip(self.content.tip_m, self.content.is_checked)
             self.side.options.crop.show_box(settings.place.crop_min_m, settings.place.crop_max_m)
         self.view.show_cell(self.content.shown, BoardSpec() if board is None else board.board)
         self.side.show_cells(self.content.known, self.desk.cell.path, self.is_new)

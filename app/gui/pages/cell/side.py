@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from app.gui.pages.cell.crop_form import CropForm
 from app.gui.pages.cell.cup_form import CupForm
 from app.gui.pages.cell.step_list import StepList
+from app.gui.pages.cell.touch_form import TouchForm
 from app.gui.pages.layouts import row_of
 from app.gui.pages.page import SidePanel
 from app.gui.theme import GRID_PX
@@ -194,6 +195,7 @@ class StepOptions(QStackedWidget):
     Attributes:
         crop: the box that holds the object.
         cup: where it stands, and how large it is.
+        touch: a corner of the board, with the tip of the hand.
     """
 
     print_wanted = Signal()
@@ -219,6 +221,10 @@ class StepOptions(QStackedWidget):
         cup = QFormLayout()
         cup.addRow(self.cup)
         self._add(step_names.CUP, cup)
+        self.touch = TouchForm()
+        touch = QFormLayout()
+        touch.addRow(self.touch)
+        self._add(step_names.CHECK, touch)
         self._add(step_names.VIEWS, _form(self.tr("Views at most"), self._n_scan_views))
 
     def show_step(self, step: str) -> None:

@@ -167,6 +167,11 @@ def _by_hand(step: str) -> str:
             "Lay the board flat near the platform, and guide the arm by hand to where the camera sees all of "
             "it.",
         ),
+        step_names.CHECK: translate(
+            "CellPage",
+            "Afterwards, guide the hand until its tip is on a corner where two black squares meet, and read "
+            "it: that tells without the camera.",
+        ),
         step_names.CUP: translate(
             "CellPage",
             "To teach it, guide the open hand around the standing cup, as it shall hold it, and read.",

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import QCoreApplication
 
@@ -13,7 +14,7 @@ from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
 from app.gui.pages.cell.side import StepOptions
 from app.jobs.cell_work import CellWork
-from app.operations.calibration import crop, step_names, steps, undoing
+from app.operations.calibration import crop, step_names, steps, touch, undoing
 from app.operations.calibration.cell_file import known_cells, new_cell
 from app.operations.calibration.cup_entry import read_taught_station
 from core.errors import PoursightError
@@ -89,6 +90,11 @@ class CellJobs:
     def read_station(self, then: Callable[[tuple[float, float, float]], None]) -> None:
         """Read where the hand was guided to."""
         self._desk.background.run(_IN_BACKGROUND, partial(read_taught_station, self._path()), then)
+
+    def read_touch(self, tip_m: tuple[float, ...]) -> None:
+        """Read the corner of the board that the hand's tip touches, (3,) in the flange frame."""
+        read = partial(touch.read_touch, self._path(), np.array(tip_m))
+        self._desk.background.run(_IN_BACKGROUND, read, lambda _: self.read_again())
 
     def enter_crop_box(
         self, low_m: npt.ArrayLike, high_m: npt.ArrayLike, refused: Callable[[PoursightError], None]

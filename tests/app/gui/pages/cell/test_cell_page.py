@@ -13,8 +13,11 @@ from app.gui.pages.cell.step_list import StepLine, StepRow
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
+from app.operations.calibration.check import check_cell
 from app.operations.calibration.cup_entry import entry_of
+from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import read_looks, runs
+from core.progress import Reporter
 from hardware.cell import read_cell
 from tests.app.gui.pages.cell.acting import (
     button,
@@ -274,3 +277,23 @@ def test_what_a_step_may_be_told_is_in_sight_once_it_is_chosen(qtbot, desk, page
     qtbot.waitUntil(lambda: not page.side.options.visibleRegion().isEmpty())
     told = page.side.options.currentWidget().findChildren(QAbstractSpinBox)[0]
     qtbot.waitUntil(lambda: not told.visibleRegion().isEmpty())
+
+
+def test_a_touched_corner_is_read_and_said_with_the_check(qtbot, desk, page):
+    path = measured_cell(seed=1)
+    choose(qtbot, desk, page, path)
+    pick(qtbot, page, "check")
+    assert not button(page, "read_touch").isEnabled(), "where the board lies is not known yet"
+    calibrate_cell(path, Reporter(), None, n_views=N_VIEWS)
+    check_cell(path, Reporter(), None, lambda: None)
+    choose(qtbot, desk, page, path)
+    pick(qtbot, page, "check")
+    assert [page.findChild(QDoubleSpinBox, f"tip_{axis}").value() for axis in "xyz"] == pytest.approx(
+        1000 * read_cell(path).gripper.grasp_pose[:3, 3], abs=0.05
+    )
+    page.findChild(QDoubleSpinBox, "tip_z").setValue(231.5)
+    press(qtbot, page, "read_touch")
+    qtbot.waitUntil(lambda: "1 corner touched, at most " in text(page, "step_figure"))
+    settle(qtbot, desk, page)
+    assert page.findChild(QDoubleSpinBox, "tip_z").value() == 231.5
+    assert states(page)["check"] == "fresh"
