@@ -173,8 +173,8 @@ def _check(cell_file: Path) -> Step:
     touches = read_touches(folder)
     if touches:
         off_m = max(float(np.linalg.norm(touch["off_m"])) for touch in touches)
-        n = len(touches)
-        figure += f"; {n} corner{'s' if n > 1 else ''} touched, at most {off_m * 1000:.1f} mm beside"
+        corners = "corner" if len(touches) == 1 else "corners"
+        figure += f"; touch check: {len(touches)} {corners} within {off_m * 1000:.1f} mm"
         is_good = is_good and off_m <= MOST_OFF_M
     if not _is_by_present_camera(cell_file, hand_eye):
         return Step(

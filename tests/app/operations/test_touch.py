@@ -63,7 +63,7 @@ def test_touches_are_kept_with_the_check_and_the_worst_one_is_said(checked):
     assert [touch["corner"] for touch in kept] == [one.touch.corner for one in found]
     assert all(np.allclose(touch["tip_m"], TIP_M) for touch in kept), "the last tip is the usual one"
     worst_mm = 1000 * max(one.touch.distance_m for one in found)
-    assert check_step(path).figure.endswith(f"5 corners touched, at most {worst_mm:.1f} mm beside")
+    assert check_step(path).figure.endswith(f"touch check: 5 corners within {worst_mm:.1f} mm")
     assert check_step(path).state is StepState.DONE
 
 

@@ -293,7 +293,7 @@ def test_a_touched_corner_is_read_and_said_with_the_check(qtbot, desk, page):
     )
     page.findChild(QDoubleSpinBox, "tip_z").setValue(231.5)
     press(qtbot, page, "read_touch")
-    qtbot.waitUntil(lambda: "1 corner touched, at most " in text(page, "step_figure"))
+    qtbot.waitUntil(lambda: "touch check: 1 corner within " in text(page, "step_figure"))
     settle(qtbot, desk, page)
     assert page.findChild(QDoubleSpinBox, "tip_z").value() == 231.5
     assert states(page)["check"] == "fresh"
