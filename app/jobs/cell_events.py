@@ -42,3 +42,16 @@ class BoardSought:
     T_base_board: FloatArray | None
     corners_px: FloatArray
     color: npt.NDArray[np.uint8] | None
+
+
+@dataclass(frozen=True, eq=False)
+class CameraSeen:
+    """What the camera sees now.
+
+    Attributes:
+        color: (H, W, 3) uint8, RGB.
+        depth_m: (H, W) along the camera's axis; 0 where there is none.
+    """
+
+    color: npt.NDArray[np.uint8]
+    depth_m: npt.NDArray[np.float32]

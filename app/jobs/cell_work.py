@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.jobs.cell_events import BoardSought, LooksPlanned
+from app.jobs.cell_events import BoardSought, CameraSeen, LooksPlanned
 from app.jobs.scan_work import PausingOperator, ScanReporter, ScanWork, planned_pose, watched_cell
 from app.jobs.service import JobReporter
+from core.errors import Cancelled
 
 if TYPE_CHECKING:
     from app.operations.calibration.capture import CaptureObserver
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
     from hardware.interfaces import CameraImage
 
+_LIVE_S = 0.2
+"""From image to image, for somebody who points a camera and looks; fewer than it can take."""
+
 
 class CellWork(ScanWork):
     """Takes the views of an object, and sets the cell up in which it does."""
@@ -33,6 +39,24 @@ class CellWork(ScanWork):
         from app.operations.calibration.devices import examine_device
 
         examine_device(cell_file, step)
+
+    def watch_camera(self, reporter: JobReporter, cell_file: Path) -> None:
+        """Publish what the camera sees until it is cancelled: `CameraSeen`.
+
+        Raises:
+            PoursightError: the camera does not answer.
+        """
+        from hardware.cell import read_cell
+        from hardware.cell.examination import camera_alone
+
+        camera = camera_alone(read_cell(cell_file))
+        with camera, suppress(Cancelled):
+            while True:
+                begun_s = time.monotonic()
+                image = camera.capture()
+                reporter.raise_if_cancelled()
+                reporter.publish(CameraSeen(image.color, image.depth_m))
+                time.sleep(max(_LIVE_S - (time.monotonic() - begun_s), 0.0))
 
     def calibrate(self, reporter: JobReporter, cell_file: Path, n_views: int, is_restarted: bool) -> None:
         """Calibrate where the camera hangs; publishes the events of `cell_events` and `arm_events`.

@@ -13,6 +13,7 @@ from core.errors import PoursightError
 from core.geometry import FloatArray
 from core.motion.joint_path import check_path
 from core.motion.kinematics import flange_pose
+from core.scan.model import Intrinsics
 from hardware.cell.cell import open_cell
 from hardware.cell.devices import real_arm, real_camera, robotiq_address
 from hardware.cell.own_arm import why_other_arm
@@ -100,7 +101,7 @@ def _kinematics_read(kinematics: Kinematics) -> str:
 def examine_camera(settings: CellSettings) -> Finding:
     """Take an image."""
     try:
-        camera = _camera_of(settings)
+        camera = camera_alone(settings)
         with camera:
             image = camera.capture()
     except PoursightError as error:
@@ -110,7 +111,19 @@ def examine_camera(settings: CellSettings) -> Finding:
     value = f"{camera.name}, {width} x {height}; depth in {share:.0%} of the pixels"
     if share == 0:
         return Finding("camera", value, "It gives no depth at all; check its projector and what it looks at.")
-    return Finding("camera", *_with_plane(value, find_plane(image.depth_m, image.intrinsics)))
+    value, problem = _with_plane(value, find_plane(image.depth_m, image.intrinsics))
+    return Finding("camera", f"{value}; {_intrinsics(settings, image.intrinsics)}", problem)
+
+
+def _intrinsics(settings: CellSettings, found: Intrinsics) -> str:
+    """The camera's intrinsics, and who says so."""
+    source = "the cell file" if settings.camera.intrinsics is not None else "the camera"
+    if settings.camera.kind == "replay":
+        source = "the recording"
+    return (
+        f"focal lengths {found.fx:.1f} and {found.fy:.1f}, centre {found.cx:.1f}, {found.cy:.1f} pixels, as "
+        f"{source} has them"
+    )
 
 
 def _with_plane(value: str, plane: DepthPlane | None) -> tuple[str, str | None]:
@@ -130,8 +143,12 @@ def _with_plane(value: str, plane: DepthPlane | None) -> tuple[str, str | None]:
     )
 
 
-def _camera_of(settings: CellSettings) -> Camera:
-    """The cell's camera; a simulated one looks at an empty cell from where the arm rests."""
+def camera_alone(settings: CellSettings) -> Camera:
+    """Return a cell's camera without its arm; a simulated one sees an empty cell from where the arm rests.
+
+    Raises:
+        InputError: there is no driver for its kind.
+    """
     if not settings.has_simulated_object:
         return real_camera(settings)
     table_m = np.array([*settings.place.platform_center_m[:2], settings.place.table_height_m])

@@ -42,6 +42,7 @@ class RunningJob:
         stage_began_s: when that stage began.
         steps: of the job; none if they are not known.
         counted: how many of how many units of that stage are done.
+        is_endless: whether it goes on until it is cancelled.
     """
 
     title: str
@@ -56,6 +57,7 @@ class RunningJob:
     stage_began_s: float = field(default_factory=time.monotonic)
     steps: JobSteps | None = None
     counted: tuple[int, int] | None = None
+    is_endless: bool = False
 
     @property
     def seconds_left(self) -> float | None:

@@ -113,6 +113,8 @@ class JobBar(QFrame):
     def _doing(self, job: RunningJob) -> str:
         if job.is_cancelling:
             return self.tr("stopping")
+        if job.is_endless:
+            return self.tr("until you cancel it")
         if not job.stage:
             return self.tr("starting")
         if job.steps is None or job.steps.current is None:

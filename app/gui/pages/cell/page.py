@@ -22,7 +22,7 @@ from app.gui.pages.cell.work import CellJobs
 from app.gui.pages.page import SplitView
 from app.gui.views.scene import Frustum
 from app.gui.views.state_mark import State
-from app.jobs.cell_events import BoardSought, LooksPlanned
+from app.jobs.cell_events import BoardSought, CameraSeen, LooksPlanned
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
 from app.operations.calibration.cup_entry import entry_of
@@ -56,6 +56,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         desk, side = self.desk, self.side
         side.primary.clicked.connect(self._press)
         side.undo.clicked.connect(lambda: self._work.undo(self.step))
+        side.live.clicked.connect(self._watch_camera)
         side.start_over.clicked.connect(lambda: self._do(is_restarted=True))
         side.steps.chosen.connect(self._pick)
         side.cell_wanted.connect(self._choose_cell)
@@ -146,6 +147,9 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         elif isinstance(news, LooksPlanned):
             self._planned = news.T_base_camera
             self._show_looks()
+        elif isinstance(news, CameraSeen):
+            self.view.show_live(news.color, news.depth_m)
+            return
         elif isinstance(news, BoardSought):
             self._looks.append(news)
             self._planned = self._planned[1:]
@@ -173,8 +177,9 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
     def _end(self, page: str) -> None:
         """A job has ended: what it did is in the files."""
         if page == self.KEY:
-            self._picked = ""
+            self._picked = step_names.CAMERA if self._work.is_live else ""
             self._question = ""
+            self.view.end_live()
             self._work.read_again()
 
     # What the user does
@@ -217,6 +222,10 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         self._picked = ""
         self.update_actions()
 
+    def _watch_camera(self) -> None:
+        self._work.watch_camera(self.side.live.text())
+        self.update_actions()
+
     def _print(self) -> None:
         try:
             self._work.print_board(self.side.options, _open)
@@ -235,6 +244,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
             step=self.step,
             is_new=self.is_new,
             is_running=self._work.is_running,
+            is_live=self._work.is_live,
             is_idle=desk.jobs.is_idle,
             is_simulated=desk.cell.is_simulated,
             is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
@@ -262,6 +272,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         is_asked = now.is_running and bool(now.question)
         self.offer(side.primary, is_asked or not now.is_running, is_asked or (can_begin and is_complete))
         self.offer(side.undo, now.can_undo and not now.is_running, now.is_idle)
+        self.offer(side.live, now.step == step_names.CAMERA and not now.is_running, can_begin)
         self.offer(side.start_over, now.can_continue and not now.is_running, can_begin)
         for widget in (side.form, side.options, side.steps):
             widget.setEnabled(now.is_idle)

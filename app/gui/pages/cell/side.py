@@ -46,6 +46,7 @@ class CellSide(SidePanel):
         options: of the chosen step.
         undo: takes back the chosen step.
         start_over: leaves an interrupted calibration aside.
+        live: shows what the camera sees now.
     """
 
     cell_wanted = Signal(object)
@@ -65,7 +66,9 @@ class CellSide(SidePanel):
         self.undo.setToolTip(self.tr("Put back what was there before; what was recorded stays"))
         self.start_over = self._button("start_over", self.tr("Start over"))
         self.start_over.setToolTip(self.tr("Leave the views of the interrupted calibration aside"))
-        for button in (self.undo, self.start_over):
+        self.live = self._button("live", self.tr("Live view"))
+        self.live.setToolTip(self.tr("Show colour and depth as the camera sees them, until it is cancelled"))
+        for button in (self.undo, self.start_over, self.live):
             button.setMinimumHeight(self.primary.minimumHeight())
             self.add_button(button)
         self._line = rule()

@@ -36,6 +36,7 @@ class Situation:
         step: the chosen one; empty if all are done.
         is_new: whether another cell is to be made.
         is_running: whether a step is under way.
+        is_live: whether that one only shows what the camera sees.
         is_idle: whether no job is running.
         is_simulated: whether nothing real moves.
         is_arm_taken: whether the process that pours holds the real arm.
@@ -50,6 +51,7 @@ class Situation:
     step: str
     is_new: bool
     is_running: bool
+    is_live: bool
     is_idle: bool
     is_simulated: bool
     is_arm_taken: bool
@@ -167,16 +169,12 @@ def obstacle_of(now: Situation) -> str:
 def _running(now: Situation) -> Now:
     if now.question:
         return Now("stale", now.question, (translate("CellPage", "Go on says yes, Cancel says no."),))
-    if now.step == step_names.ARM:
-        return Now("running", translate("CellPage", "Asking the controller …"))
-    if now.step == step_names.CAMERA:
-        return Now("running", translate("CellPage", "Taking an image …"))
-    if now.step == step_names.VIEWS:
-        return Now("running", translate("CellPage", "Choosing views that show all sides …"))
-    if now.step == step_names.CUP:
-        return Now("running", translate("CellPage", "Seeing whether the arm can pour with this cup …"))
-    if now.step == step_names.DRY_RUN:
-        return Now("running", translate("CellPage", "The arm goes through a pour with an empty cup …"))
+    if now.is_live:
+        headline = translate("CellPage", "This is what the camera sees now.")
+        return Now("running", headline, (translate("CellPage", "Hatched: no depth. Cancel ends it."),))
+    alone = _alone(now.step)
+    if alone:
+        return Now("running", alone)
     if not now.looks:
         return Now("running", translate("CellPage", "Connecting to the cell …"))
     n = now.looks[-1].n_usable
@@ -193,6 +191,17 @@ def _running(now: Situation) -> Now:
     else:
         headline = translate("CellPage", "Looking at the board from all sides: {n} views.").format(n=n)
     return Now("running", headline, refused[-_SHOWN_REFUSALS:])
+
+
+def _alone(step: str) -> str:
+    """What goes on in a step that does not look at the board; empty for the others."""
+    return {
+        step_names.ARM: translate("CellPage", "Asking the controller …"),
+        step_names.CAMERA: translate("CellPage", "Taking an image …"),
+        step_names.VIEWS: translate("CellPage", "Choosing views that show all sides …"),
+        step_names.CUP: translate("CellPage", "Seeing whether the arm can pour with this cup …"),
+        step_names.DRY_RUN: translate("CellPage", "The arm goes through a pour with an empty cup …"),
+    }.get(step, "")
 
 
 def _remedy(step: str) -> str:

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.gui.pages.cell_model import ShownCell
 from app.gui.theme import GRID_PX, theme_of
-from app.gui.views.depth_image import ImagePanel
+from app.gui.views.depth_image import DepthPanel, ImagePanel
 from app.gui.views.labels import text_label
 from app.gui.views.scene import Frustum, Scene3D
 from app.gui.views.scene.shapes import Shape, box_mesh
@@ -53,7 +53,11 @@ class CellView(QWidget):
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
-        column.addWidget(self.scene, 1)
+        self._live = LivePanel()
+        self._large = QStackedWidget()
+        self._large.addWidget(self.scene)
+        self._large.addWidget(self._live)
+        column.addWidget(self._large, 1)
         column.addWidget(self.now)
 
     def show_cell(self, cell: ShownCell, board: BoardSpec) -> None:
@@ -71,6 +75,17 @@ class CellView(QWidget):
             scene.set_points(_REACH, cell.reach_m, color="scene", size_px=1)
         if is_other:
             scene.fit(_TABLE, _BOX, _REACH)
+
+    def show_live(self, color: npt.NDArray[np.uint8], depth_m: npt.NDArray[np.float32]) -> None:
+        """Show what the camera sees, in place of the cell."""
+        self._large.setCurrentWidget(self._live)
+        self.now.show_frame(False)
+        self._live.show_images(color, depth_m)
+
+    def end_live(self) -> None:
+        """Show the cell again."""
+        self._large.setCurrentWidget(self.scene)
+        self.now.show_frame(True)
 
     def offer_box(self, is_offered: bool) -> None:
         """Let the sides of the crop box be dragged, or not."""
@@ -118,6 +133,25 @@ class CellView(QWidget):
             self.scene.set_joints(_ARM, cell.model.home_rad if joints_rad is None else joints_rad)
 
 
+class LivePanel(QWidget):
+    """What the camera sees now: colour, and depth with its scale, beside each other."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setObjectName("live_view")
+        self._color, self._depth = ImagePanel(is_above_depth=True), DepthPanel()
+        row = QHBoxLayout(self)
+        row.setContentsMargins(2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX, 2 * GRID_PX)
+        row.setSpacing(2 * GRID_PX)
+        row.addWidget(self._color, 1)
+        row.addWidget(self._depth, 1)
+
+    def show_images(self, color: npt.NDArray[np.uint8], depth_m: npt.NDArray[np.float32]) -> None:
+        """Show colour (H, W, 3) and depth (H, W)."""
+        self._color.set_image(color)
+        self._depth.set_depth(depth_m)
+
+
 class NowPanel(QWidget):
     """What goes on, or is next: a picture of the camera's, a mark, a sentence, and further ones."""
 
@@ -148,6 +182,10 @@ class NowPanel(QWidget):
         self._mark.set_state(state)
         self._headline.setText(headline)
         self._details.setText("\n".join(details))
+
+    def show_frame(self, is_shown: bool) -> None:
+        """Show the picture's place, or leave it out."""
+        self._image.setVisible(is_shown)
 
     def show_picture(self, color: npt.NDArray[np.uint8] | None, corners_px: FloatArray | None = None) -> None:
         """Show an image (H, W, 3), and the corners (C, 2) that were found in it."""

@@ -33,6 +33,8 @@ class CellJobs:
         self._job: RunningJob | None = None
         self.step = ""
         """That was started last."""
+        self.is_live = False
+        """Whether it shows what the camera sees, and does nothing else."""
 
     @property
     def is_running(self) -> bool:
@@ -76,6 +78,13 @@ class CellJobs:
         else:
             assert step == step_names.VIEWS, "there are no others"
             self._start(step, title, CellWork.choose_views, path, options.n_scan_views)
+
+    def watch_camera(self, title: str) -> None:
+        """Show what the camera sees until it is cancelled."""
+        self._start(step_names.CAMERA, title, CellWork.watch_camera, self._path())
+        self.is_live = self.is_running
+        if self._job is not None and self.is_live:
+            self._job.is_endless = True
 
     def print_board(self, options: StepOptions, then: Callable[[Path], None]) -> None:
         """Write the board's PDF; raises as `do` does."""
@@ -130,7 +139,7 @@ class CellJobs:
         desk = self._desk
         if not desk.jobs.is_idle:
             return
-        self.step = step
+        self.step, self.is_live = step, False
         desk.scan_host.order(CellWork.get_ready)
         patience_s = 1.0 if desk.cell.is_simulated else _PATIENCE_REAL_S
         done = QCoreApplication.translate("CellPage", "{title}: done.").format(title=title)

@@ -10,6 +10,8 @@ import pytest
 from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QDoubleSpinBox, QLabel, QSpinBox
 
 from app.gui.pages.cell.step_list import StepLine, StepRow
+from app.gui.views.depth_image import DepthPanel
+from app.jobs.cell_events import CameraSeen
 from app.jobs.scan_events import ScanQuestion
 from app.operations.calibration import step_names
 from app.operations.calibration.cell_file import new_cell
@@ -29,9 +31,11 @@ from tests.app.gui.pages.cell.acting import (
     states,
     text,
 )
+from tests.patience import HANG_S
 
 STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
 N_VIEWS = 8
+HANG_MS = int(1000 * HANG_S)
 
 
 def test_of_the_shipped_cell_nothing_is_changed_but_a_new_one_is_offered(qtbot, desk, page, cells):
@@ -297,3 +301,24 @@ def test_a_touched_corner_is_read_and_said_with_the_check(qtbot, desk, page):
     settle(qtbot, desk, page)
     assert page.findChild(QDoubleSpinBox, "tip_z").value() == 231.5
     assert states(page)["check"] == "fresh"
+
+
+def test_what_the_camera_sees_is_shown_live_until_it_is_cancelled(qtbot, desk, page):
+    choose(qtbot, desk, page, measured_cell())
+    pick(qtbot, page, "board")
+    assert not button(page, "live").isVisible()
+    pick(qtbot, page, "camera")
+    depth = page.findChild(DepthPanel)
+    seen = []
+    desk.jobs.event_received.connect(lambda news: seen.append(news) if isinstance(news, CameraSeen) else None)
+    press(qtbot, page, "live")
+    qtbot.waitUntil(lambda: len(seen) >= 3, timeout=HANG_MS)
+    assert depth.isVisible() and not page.view.scene.isVisible()
+    assert 0.3 < depth.range_m[0] < depth.range_m[1] < 2
+    assert text(page, "headline") == "This is what the camera sees now."
+    assert not button(page).isEnabled() and not button(page, "live").isVisible()
+    desk.jobs.cancel()
+    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=HANG_MS)
+    settle(qtbot, desk, page)
+    assert page.view.scene.isVisible() and not depth.isVisible()
+    assert states(page)["camera"] == "empty", "to look is not to try"
