@@ -35,6 +35,7 @@ from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.reference import store_reference
 from app.operations.calibration.steps import enter_board, steps
 from app.operations.calibration.table import measure_table
+from app.operations.calibration.touch import read_touch
 from app.operations.calibration.views import choose_views
 from core.calibration.board import BoardSpec
 from core.mesh_file import write_mesh
@@ -157,6 +158,8 @@ def _make_cell() -> None:
     enter_board(path, BoardSpec(), "a4", 0.030)
     calibrate_cell(path, Reporter(), None)
     check_cell(path, Reporter(), None, lambda: None)
+    for _ in range(3):
+        read_touch(path)
     measure_table(path, Reporter(), None, lambda: None)
     choose_views(path, Reporter())
     store_reference(path, Reporter(), None, lambda: None)
