@@ -268,6 +268,11 @@ class Gripper(_Device, Protocol):
         """Whether it holds something; none where it does not report that."""
         ...
 
+    @property
+    def width_m(self) -> float | None:
+        """Width between its fingers; none where it does not report that."""
+        ...
+
     def close(self) -> None:
         """Close it and return when it had the time to."""
         ...

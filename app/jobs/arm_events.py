@@ -54,6 +54,7 @@ class ArmStatus(Status):
         problem: a sentence, if it cannot be used as it is; empty if it can.
         must_back_off: whether a run was stopped midway, so that the arm has to back off first.
         is_holding: whether the gripper holds something; none where it does not report that.
+        grip_width_m: between its fingers; none where it does not report that.
     """
 
     state: RobotState | None
@@ -61,6 +62,7 @@ class ArmStatus(Status):
     problem: str
     must_back_off: bool = False
     is_holding: bool | None = None
+    grip_width_m: float | None = None
 
 
 @dataclass(frozen=True)

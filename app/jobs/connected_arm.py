@@ -152,12 +152,13 @@ class ConnectedArm:
         """
         try:
             state = self.arm.robot.state()
-            is_closed, is_holding = self.arm.gripper.is_closed, self.arm.gripper.is_holding
+            gripper = self.arm.gripper
+            is_closed, is_holding, width_m = gripper.is_closed, gripper.is_holding, gripper.width_m
         except RobotError as error:
             if isinstance(error, RobotLost) and not self.is_at_work and not self.must_back_off:
                 raise
             return ArmStatus(None, None, str(error), self.must_back_off)
-        return ArmStatus(state, is_closed, self._problem(state), self.must_back_off, is_holding)
+        return ArmStatus(state, is_closed, self._problem(state), self.must_back_off, is_holding, width_m)
 
     def _problem(self, state: RobotState) -> str:
         unready = unreadiness(state.safety_mode, state.robot_mode)

@@ -19,9 +19,11 @@ from hardware.cell.devices import real_arm, real_camera, robotiq_address
 from hardware.cell.own_arm import why_other_arm
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import CellSettings
+from hardware.grippers.robotiq import MODELS
 from hardware.grippers.robotiq_line import Contact, RobotiqLine, refuse_faulty
 from hardware.interfaces import Camera, Kinematics
 from hardware.modes import unreadiness
+from hardware.robots.ur.dashboard import Dashboard
 from hardware.simulation.world import World
 
 SAME_VIEW_M, SAME_VIEW_RAD = 0.03, np.radians(5.0)
@@ -56,17 +58,27 @@ def examine_robot(settings: CellSettings) -> Finding:
         arm = real_arm(settings)
         seen = arm.look()
         pending = arm.pending_step()
+        number, control = _identity(robot.address or "")
     except PoursightError as error:
         return Finding("robot", subject, str(error))
     version = ".".join(map(str, arm.controller_version))
     modes = f"{seen.robot_mode.words}, safety {seen.safety_mode.words}"
     agree = "are only known when it is connected" if seen.tool_offset is None else "agree"
-    said = f"{subject}, controller {version}; {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
+    what = f"{subject}, controller {version}{number}{control}"
+    said = f"{what}; {modes}, its kinematics {agree}, speed slider {seen.slider:.0%}"
     limits = "not read (compare them at its panel)" if arm.joint_limits is None else "read"
     said = f"{said}, {_kinematics_read(arm.kinematics)}, joint limits {limits}"
     unready = unreadiness(seen.safety_mode, seen.robot_mode)
     problem = pending[1] if pending is not None else None if unready is None else str(unready)
     return Finding("robot", said, problem or why_other_arm(settings, arm.kinematics) or None)
+
+
+def _identity(address: str) -> tuple[str, str]:
+    """Serial number and control, as they are said; empty where the controller does not tell them."""
+    with Dashboard(address) as dashboard:
+        number = dashboard.serial_number()
+        control = ", in remote control" if dashboard.has_remote_control() else ""
+    return "" if number is None else f", serial number {number}", control
 
 
 def examine_gripper(settings: CellSettings) -> Finding:
@@ -76,19 +88,18 @@ def examine_gripper(settings: CellSettings) -> Finding:
         return Finding("gripper", f"{gripper.kind}, output {gripper.output}")
     if not robot.is_real:
         return Finding("gripper", f"simulated Robotiq {gripper.model}")
-    assert robot.address is not None, "checked by the validator for ur5"
+    assert robot.address is not None and gripper.model is not None, "checked by the validators"
     address = robotiq_address(gripper, robot.address)
     assert address is not None, "it is one"
     subject = f"Robotiq {gripper.model} at {address}"
     try:
         with RobotiqLine(address) as line:
             refuse_faulty(line, address)
-            contact = line.get("OBJ")
+            contact, width_m = line.get("OBJ"), MODELS[gripper.model].width_m(line.get("POS"))
     except PoursightError as error:
         return Finding("gripper", subject, str(error))
-    return Finding(
-        "gripper", f"{subject}, holds {'something' if contact == Contact.WHILE_CLOSING else 'nothing'}"
-    )
+    held = "something" if contact == Contact.WHILE_CLOSING else "nothing"
+    return Finding("gripper", f"{subject}, {1000 * width_m:.0f} mm wide, holds {held}")
 
 
 def _kinematics_read(kinematics: Kinematics) -> str:

@@ -34,6 +34,11 @@ class RobotiqModel:
     open_count: int
     closed_count: int
 
+    def width_m(self, count: int) -> float:
+        """Return the width between the fingers at a count of its position register."""
+        share = (self.closed_count - count) / (self.closed_count - self.open_count)
+        return min(max(share, 0.0), 1.0) * self.stroke_m
+
 
 MODELS = {
     "2F-85": RobotiqModel(0.085, 3, 230),
@@ -126,9 +131,7 @@ class RobotiqGripper:
         Raises:
             GripperError: it does not answer.
         """
-        model = self._model
-        share = (model.closed_count - self._connected().get("POS")) / (model.closed_count - model.open_count)
-        return min(max(share, 0.0), 1.0) * model.stroke_m
+        return self._model.width_m(self._connected().get("POS"))
 
     def close(self) -> None:
         """Close it and return when its fingers stand; what they hold is watched from then on.

@@ -27,6 +27,10 @@ class SimulatedGripper:
         return self._is_closed
 
     @property
+    def width_m(self) -> None:
+        """Not known."""
+
+    @property
     def is_holding(self) -> None:
         """It reports nothing of that."""
 

@@ -43,6 +43,10 @@ class ToolOutputGripper:
         return self._robot.state().tool_outputs[self._output]
 
     @property
+    def width_m(self) -> None:
+        """Not known."""
+
+    @property
     def is_holding(self) -> None:
         """It reports nothing of that."""
 

@@ -104,6 +104,15 @@ class Dashboard:
         answer = self.ask("get robot model").strip()
         return None if _NOT_KNOWN in answer.lower() else answer
 
+    def serial_number(self) -> str | None:
+        """The arm's serial number; none where it does not know the question."""
+        answer = self.ask("get serial number").strip()
+        return answer if re.fullmatch(r"[\w-]{4,30}", answer) else None
+
+    def has_remote_control(self) -> bool:
+        """Whether it tells local from remote control: controllers before 5.6 do not."""
+        return self.ask("is in remote control").strip().lower() in ("true", "false")
+
     def version(self) -> tuple[int, ...]:
         """The version of the controller's software: (3, 15) or more exact; empty if it reports none."""
         found = re.search(r"\d+(\.\d+)+", self.ask("PolyscopeVersion"))

@@ -13,7 +13,7 @@ from core.errors import InputError
 from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.cell import SIMULATED_CELL, CellSettings, open_arm, read_cell
-from hardware.cell.examination import Finding, examine_cell
+from hardware.cell.examination import Finding, examine_cell, examine_gripper
 from hardware.cell.settings import ARMS
 from hardware.errors import RobotUnreachable
 from hardware.robots.ur.robot import UR5Robot
@@ -117,6 +117,7 @@ def test_the_examination_connects_and_moves_nothing() -> None:
         finding = robot_finding(real_at(controller.address))
         assert finding.problem is None
         assert finding.value.startswith(f"UR5 at {controller.address}, controller 5.11")
+        assert ", serial number 20000000001, in remote control; " in finding.value
         assert "running, safety normal, its kinematics agree" in finding.value
         assert "calibrated kinematics read (checksum ffffffff-" in finding.value
         assert "joint limits read" in finding.value
@@ -132,3 +133,18 @@ def test_the_examination_says_that_nobody_answers() -> None:
     assert finding.value == "UR5 at 127.83.11.9"
     assert "Nobody answers" in str(finding.problem)
     assert "switch the controller on" in str(finding.problem)
+
+
+def test_a_controller_that_tells_neither_number_nor_control_is_examined_all_the_same() -> None:
+    with ControllerProcess(version="3.15", joints_rad=HOME) as controller:
+        finding = robot_finding(real_at(controller.address))
+        assert finding.problem is None
+        assert "serial number" not in finding.value and "remote control" not in finding.value
+
+
+def test_a_robotiq_gripper_is_examined_with_its_width_and_what_it_holds() -> None:
+    with ControllerProcess(version="3.15", joints_rad=HOME, robotiq="2F-85") as controller:
+        settings = real_at(controller.address)
+        gripper = settings.gripper.model_copy(update={"kind": "robotiq", "model": "2F-85"})
+        finding = examine_gripper(settings.model_copy(update={"gripper": gripper}))
+        assert finding.value.endswith(" mm wide, holds nothing")

@@ -183,6 +183,8 @@ def _state_facts(status: ArmStatus, has_stop_channel: bool) -> list[Fact]:
     grip = {None: "--", True: tr("closed"), False: tr("open")}[status.is_gripper_closed]
     if status.is_gripper_closed and status.is_holding is not None:
         grip = tr("holds something") if status.is_holding else tr("closed, empty")
+    if status.grip_width_m is not None:
+        grip = tr("{grip}, {width:.0f} mm wide").format(grip=grip, width=1000 * status.grip_width_m)
     stop = tr("connected") if has_stop_channel else tr("via the arm's process")
     return [
         Fact(tr("Arm"), mode, tr("The controller's robot mode; 'running': power on, brakes released")),
