@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QFormLayout, QWidget
+from PySide6.QtWidgets import QFormLayout, QWidget
 
+from app.gui.pages.cell.number_box import number_box
 from app.gui.pages.layouts import row_of
 from app.gui.theme import GRID_PX
 
 MM = 1000.0
 _REACH_MM = 2000.0
-_BOX_PX = 62
-"""Three of them beside a title are as wide as the panel."""
 Point = tuple[float, float, float]
 
 
@@ -25,7 +24,10 @@ class CropForm(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._low, self._high = ([_box(f"crop_{end}_{axis}") for axis in "xyz"] for end in ("low", "high"))
+        self._low, self._high = (
+            [number_box(f"crop_{end}_{axis}", -_REACH_MM, _REACH_MM) for axis in "xyz"]
+            for end in ("low", "high")
+        )
         form = QFormLayout(self)
         form.setContentsMargins(0, 0, 0, 0)
         form.setSpacing(GRID_PX)
@@ -38,6 +40,7 @@ class CropForm(QWidget):
                 box.setToolTip(
                     self.tr("What is outside is no part of the object; drag its sides in the view")
                 )
+                box.setKeyboardTracking(False)
                 box.valueChanged.connect(self._emit)
             form.addRow(title, row_of(*boxes))
 
@@ -50,14 +53,3 @@ class CropForm(QWidget):
     def _emit(self) -> None:
         low, high = (tuple(box.value() / MM for box in boxes) for boxes in (self._low, self._high))
         self.edited.emit(low, high)
-
-
-def _box(name: str) -> QDoubleSpinBox:
-    box = QDoubleSpinBox()
-    box.setObjectName(name)
-    box.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
-    box.setFixedWidth(_BOX_PX)
-    box.setRange(-_REACH_MM, _REACH_MM)
-    box.setDecimals(1)
-    box.setKeyboardTracking(False)
-    return box

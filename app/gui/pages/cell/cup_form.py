@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QFormLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QFormLayout, QPushButton, QWidget
 
+from app.gui.pages.cell.number_box import number_box
 from app.gui.pages.layouts import row_of
 from app.gui.theme import GRID_PX
 from app.operations.calibration.cup_entry import CupEntry, base_diameter_m, changed_cup
@@ -14,8 +15,6 @@ from core.parameters.bodies import CupParameters
 
 MM = 1000.0
 _REACH_MM = 2000.0
-_BOX_PX = 62
-"""Three of them beside a title are as wide as the panel."""
 
 
 class CupForm(QWidget):
@@ -30,10 +29,10 @@ class CupForm(QWidget):
         super().__init__()
         self._shown: CupEntry | None = None
         self._of: Path | None = None
-        self._station = [_box(f"station_{axis}", -_REACH_MM, _REACH_MM, 1) for axis in "xyz"]
-        self._length, self._wall = _box("cup_length", 20, 400, 1), _box("cup_wall", 0.5, 20, 1)
-        self._mouth, self._base = _box("cup_mouth", 20, 400, 1), _box("cup_base", 5, 400, 1)
-        self._payload, self._cup_kg = _box("payload", 0, 5, 2), _box("cup_mass", 0, 5, 2)
+        self._station = [number_box(f"station_{axis}", -_REACH_MM, _REACH_MM, 1) for axis in "xyz"]
+        self._length, self._wall = number_box("cup_length", 20, 400, 1), number_box("cup_wall", 0.5, 20, 1)
+        self._mouth, self._base = number_box("cup_mouth", 20, 400, 1), number_box("cup_base", 5, 400, 1)
+        self._payload, self._cup_kg = number_box("payload", 0, 5, 2), number_box("cup_mass", 0, 5, 2)
         self.read = QPushButton(self.tr("Read from the arm"))
         self.read.setObjectName("read_station")
         self.read.setToolTip(
@@ -90,13 +89,3 @@ class CupForm(QWidget):
         length, mouth, base, wall = changed
         cup = changed_cup(held, (length, mouth, base, wall))
         return CupEntry((x, y, z), cup, self._payload.value(), self._cup_kg.value())
-
-
-def _box(name: str, least: float, most: float, decimals: int) -> QDoubleSpinBox:
-    box = QDoubleSpinBox()
-    box.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
-    box.setFixedWidth(_BOX_PX)
-    box.setObjectName(name)
-    box.setRange(least, most)
-    box.setDecimals(decimals)
-    return box

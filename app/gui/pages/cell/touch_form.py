@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Signal
-from PySide6.QtWidgets import QAbstractSpinBox, QDoubleSpinBox, QFormLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QFormLayout, QPushButton, QWidget
 
+from app.gui.pages.cell.number_box import number_box
 from app.gui.pages.layouts import row_of
 from app.gui.theme import GRID_PX
 
 MM = 1000.0
 _REACH_MM = 500.0
-_BOX_PX = 62
-"""Three of them beside a title are as wide as the panel."""
 
 
 class TouchForm(QWidget):
@@ -25,7 +24,7 @@ class TouchForm(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._shown: tuple[float, ...] = ()
-        self._tip = [_box(f"tip_{axis}") for axis in "xyz"]
+        self._tip = [number_box(f"tip_{axis}", -_REACH_MM, _REACH_MM) for axis in "xyz"]
         self.read = QPushButton(self.tr("Read a touched corner"))
         self.read.setObjectName("read_touch")
         self.read.setToolTip(
@@ -55,13 +54,3 @@ class TouchForm(QWidget):
     def tip_m(self) -> tuple[float, ...]:
         """The tip (3,) in the flange frame."""
         return tuple(box.value() / MM for box in self._tip)
-
-
-def _box(name: str) -> QDoubleSpinBox:
-    box = QDoubleSpinBox()
-    box.setObjectName(name)
-    box.setButtonSymbols(QAbstractSpinBox.ButtonSymbols.NoButtons)
-    box.setFixedWidth(_BOX_PX)
-    box.setRange(-_REACH_MM, _REACH_MM)
-    box.setDecimals(1)
-    return box
