@@ -31,11 +31,9 @@ from tests.app.gui.pages.cell.acting import (
     states,
     text,
 )
-from tests.patience import HANG_S
 
 STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
 N_VIEWS = 8
-HANG_MS = int(1000 * HANG_S)
 
 
 def test_of_the_shipped_cell_nothing_is_changed_but_a_new_one_is_offered(qtbot, desk, page, cells):
@@ -312,13 +310,13 @@ def test_what_the_camera_sees_is_shown_live_until_it_is_cancelled(qtbot, desk, p
     seen = []
     desk.jobs.event_received.connect(lambda news: seen.append(news) if isinstance(news, CameraSeen) else None)
     press(qtbot, page, "live")
-    qtbot.waitUntil(lambda: len(seen) >= 3, timeout=HANG_MS)
+    qtbot.waitUntil(lambda: len(seen) >= 3)
     assert depth.isVisible() and not page.view.scene.isVisible()
     assert 0.3 < depth.range_m[0] < depth.range_m[1] < 2
     assert text(page, "headline") == "This is what the camera sees now."
     assert not button(page).isEnabled() and not button(page, "live").isVisible()
     desk.jobs.cancel()
-    qtbot.waitUntil(lambda: desk.jobs.is_idle, timeout=HANG_MS)
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)
     settle(qtbot, desk, page)
     assert page.view.scene.isVisible() and not depth.isVisible()
     assert states(page)["camera"] == "empty", "to look is not to try"
