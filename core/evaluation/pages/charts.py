@@ -132,12 +132,9 @@ def scatter(
 
 
 def _shares_above(found: Figures) -> tuple[float, float]:
-    """Share of the containers and of the others that are judged containers."""
-    cells = found.confusion
-    return (
-        cells.true_positive / (cells.true_positive + cells.false_negative),
-        cells.false_positive / (cells.false_positive + cells.true_negative),
-    )
+    """Share of the containers and of the others that are judged containers; "cannot tell" is none."""
+    cells, (containers, others) = found.confusion, found.scores
+    return cells.true_positive / len(containers), cells.false_positive / len(others)
 
 
 def _figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:

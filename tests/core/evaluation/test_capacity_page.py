@@ -9,6 +9,7 @@ import pytest
 from core.evaluation.pages.cards import cards_of, judged_sentence, poured_sentence
 from core.evaluation.pages.charts import histogram, roc_sentence
 from core.evaluation.pages.report import report_page
+from core.evaluation.statistics import Figures
 from core.evaluation.tables import figures_of
 from tests.core.evaluation.evaluations import N_POURS, evaluation_of, held, titles_of, trial, two_measures
 
@@ -142,3 +143,14 @@ def test_the_other_measure_has_charts_of_its_own(tmp_path: Path) -> None:
     assert page.count("Judgements by label") == 2
     one = replace(two_measures(), variants=("imagination",))
     assert "Omega of containers and of others" not in report_page(one, tmp_path)
+
+
+def test_where_nothing_of_a_label_could_be_told_the_report_is_made_all_the_same(tmp_path: Path) -> None:
+    trials = [
+        held("mug", "container", 0.6),
+        held("vase", "container", 0.02, unseen_ml=300.0),
+        held("teapot", "non-container", 0.04, unseen_ml=1000.0),
+    ]
+    found = Figures.of(trials, N_POURS)
+    assert "50.0 % of the containers and 0.0 % of the others" in roc_sentence(found)
+    assert "cannot tell" in report_page(evaluation_of(*trials), tmp_path).lower()
