@@ -101,18 +101,24 @@ def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenIn
     frontier = large_groups(frontier, SMALLEST_PATCH_M2 / volume.voxel_m**2, ALL_NEIGHBOURS)
     region = _connected_to(frontier, enclosed & ~seen)
     looked_through = enclosed & seen
-    assumed = _only_behind_outer_sides(solid, region, looked_through, volume)
+    assumed = _only_behind_outer_sides(solid, region, looked_through, outside & seen, volume)
     return UnseenInside(outside, enclosed, looked_through, frontier, region, assumed, first_layer)
 
 
 def _only_behind_outer_sides(
-    solid: BoolArray, region: BoolArray, free: BoolArray, volume: TsdfVolume
+    solid: BoolArray, region: BoolArray, inside: BoolArray, around: BoolArray, volume: TsdfVolume
 ) -> BoolArray:
-    """Solid voxels joined to the region so far from free space inside that no view from there saw them."""
+    """Solid voxels joined to the region that no view from the free space inside saw, nor one from around.
+
+    A lid that was seen from above is one, as thin as it may be.
+    """
     if not region.any():
         return np.zeros_like(region)
-    from_inside_m = distance_transform_edt(~free) * volume.voxel_m if free.any() else np.inf
-    unsure = solid & (from_inside_m > volume.behind_m)
+    from_inside_m, from_around_m = (
+        distance_transform_edt(~free) * volume.voxel_m if free.any() else np.inf for free in (inside, around)
+    )
+    is_below_lid = from_around_m > THINNEST_WALL_M + volume.voxel_m / 2
+    unsure = solid & (from_inside_m > volume.behind_m) & is_below_lid
     return _connected_to(region, region | unsure) & unsure
 
 

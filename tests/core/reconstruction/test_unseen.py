@@ -41,6 +41,18 @@ def test_a_wall_that_was_seen_from_both_sides_is_as_thick_as_it_looks():
     assert unseen.region.any() and not unseen.assumed[:, :, :24].any()
 
 
+def test_a_lid_that_was_seen_from_above_is_there_however_little_was_seen_below_it():
+    volume = shaft(0.104)
+    lid = slice(10, 21), slice(10, 21), slice(26, 30)
+    volume.distance[lid] = -0.5
+    volume.distance[20, 10:21, 26:30] = 1.0  # a slit at one side, through which the views look
+    unseen = find_unseen_inside(volume, platform_height_m=0.0)
+    room = unseen.in_volume(unseen.room(VOXEL_M))
+    assert room[10:21, 10:21, 25].all(), "below it all may be hollow, and it may be thin"
+    assert unseen.in_volume(unseen.assumed)[10:15, 10:21, 26:29].all()
+    assert not room[:, :, 29].any()
+
+
 def reconstructed(mesh) -> Reconstruction:
     return reconstruct(on_platform(mesh).scan(LOW_RINGS), ReconstructionParameters(), Reporter())
 
