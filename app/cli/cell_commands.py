@@ -112,6 +112,10 @@ def check(name: str, is_confirmed: bool) -> bool:
     print(_figure(path, step_names.CHECK))
     if not found.agreement.is_good:
         print("The calibration does not hold: calibrate anew, and see that camera and board are fixed.")
+    else:
+        print(
+            f"Next: poursight cell table {name}, or first, while the board lies there: poursight cell touch {name}"
+        )
     return found.agreement.is_good
 
 

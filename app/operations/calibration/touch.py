@@ -27,6 +27,7 @@ from hardware.simulation.board_view import lying_board
 from hardware.simulation.touching import joints_on_point
 
 TOUCHES = "touches.json"
+FARTHEST_TIP_M = 0.5
 _STREAM = 5
 
 
@@ -53,7 +54,7 @@ def read_touch(cell_file: Path, tip_m: FloatArray | None = None) -> Touched:
         tip_m: (3,) the tip in the flange frame; none: as touched with last, else the middle of the grip.
 
     Raises:
-        InputError: the cell was not checked since it was calibrated.
+        InputError: the cell was not checked since it was calibrated, or no tip is where it is said to be.
         StageError: no corner is near enough to tell which one is touched.
         RobotError: the controller does not answer, or the arm moves.
         SessionError: a record is damaged, or the disk refuses.
@@ -63,6 +64,11 @@ def read_touch(cell_file: Path, tip_m: FloatArray | None = None) -> Touched:
     touches = read_touches(folder)
     settings = calibrated.settings
     tip = usual_tip_m(settings, touches) if tip_m is None else np.asarray(tip_m, dtype=float)
+    if not np.linalg.norm(tip) <= FARTHEST_TIP_M:
+        raise InputError(
+            f"A tip is at most {1000 * FARTHEST_TIP_M:.0f} mm from the flange; measure where it is, in the "
+            "flange frame."
+        )
     if settings.robot.is_real:
         joints_rad = guided_joints_rad(settings)
     else:

@@ -90,6 +90,14 @@ def test_a_tip_that_is_measured_wrong_is_refused_and_nothing_is_kept(checked, mo
     assert read_touches(folder) == []
 
 
+@pytest.mark.parametrize("tip_m", [(0.0, 0.0, 0.6), (np.nan, 0.0, 0.2)])
+def test_a_tip_that_is_nowhere_near_the_flange_is_refused(checked, tip_m):
+    path, folder = checked
+    with pytest.raises(InputError, match="at most 500 mm from the flange"):
+        read_touch(path, np.array(tip_m))
+    assert read_touches(folder) == []
+
+
 @pytest.mark.parametrize("content", ["[1]", '{"touches": [{"corner": 1}]}', '{"touches": 3}', "{"])
 def test_a_damaged_record_is_a_sentence(checked, content):
     path, folder = checked
