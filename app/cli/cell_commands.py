@@ -114,7 +114,7 @@ def check(name: str, is_confirmed: bool) -> bool:
         print("The calibration does not hold: calibrate anew, and see that camera and board are fixed.")
     else:
         print(
-            f"Next: poursight cell table {name}, or first, while the board lies there: poursight cell touch {name}"
+            f"Next: poursight cell touch {name} (the board still lies there), or poursight cell table {name}"
         )
     return found.agreement.is_good
 
