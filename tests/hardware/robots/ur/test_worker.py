@@ -151,6 +151,7 @@ import sys
 import numpy as np
 from core.motion.trajectory import JointTrajectory
 from tests.hardware.robots.ur.bench import FAR, HOME, driver
+from tests.patience import HANG_S
 
 times_s = np.arange(0, 8, 0.008)
 share = (1 - np.cos(np.pi * times_s / times_s[-1])) / 2
