@@ -53,12 +53,13 @@ def examine_robot(settings: CellSettings) -> Finding:
     robot = settings.robot
     if not robot.is_real:
         return Finding("robot", f"{robot.kind} {robot.model}")
+    assert robot.address is not None, "checked by the validator for ur5"
     subject = f"{robot.model} at {robot.address}"
     try:
         arm = real_arm(settings)
         seen = arm.look()
         pending = arm.pending_step()
-        number, control = _identity(robot.address or "")
+        number, control = _identity(robot.address)
     except PoursightError as error:
         return Finding("robot", subject, str(error))
     version = ".".join(map(str, arm.controller_version))

@@ -237,6 +237,9 @@ def test_kill_9_in_the_middle_keeps_every_look_and_the_same_command_goes_on(pour
     code, out, _ = poursight("cell", "table", "bench", "--yes")
     assert code == 0 and "above the base" in out
     assert poursight("cell", "check", "bench", "--yes")[0] == 0
+    code, out, _ = poursight("cell", "touch", "bench")
+    assert code == 0 and out.startswith("The tip is 0.")
+    assert "touch check: 1 corner within 0." in poursight("cell", "show", "bench")[1]
     code, out, _ = poursight("cell", "reference", "bench", "--yes")
     assert code == 0 and "looked at again when a scan begins" in out
     code, out, _ = poursight("cell", "views", "bench", "--n=8")

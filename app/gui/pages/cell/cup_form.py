@@ -29,9 +29,9 @@ class CupForm(QWidget):
         super().__init__()
         self._shown: CupEntry | None = None
         self._of: Path | None = None
-        self._station = [number_box(f"station_{axis}", -_REACH_MM, _REACH_MM, 1) for axis in "xyz"]
-        self._length, self._wall = number_box("cup_length", 20, 400, 1), number_box("cup_wall", 0.5, 20, 1)
-        self._mouth, self._base = number_box("cup_mouth", 20, 400, 1), number_box("cup_base", 5, 400, 1)
+        self._station = [number_box(f"station_{axis}", -_REACH_MM, _REACH_MM) for axis in "xyz"]
+        self._length, self._wall = number_box("cup_length", 20, 400), number_box("cup_wall", 0.5, 20)
+        self._mouth, self._base = number_box("cup_mouth", 20, 400), number_box("cup_base", 5, 400)
         self._payload, self._cup_kg = number_box("payload", 0, 5, 2), number_box("cup_mass", 0, 5, 2)
         self.read = QPushButton(self.tr("Read from the arm"))
         self.read.setObjectName("read_station")
