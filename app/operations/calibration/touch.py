@@ -116,6 +116,7 @@ def _checked(cell_file: Path, calibrated: CalibratedCell) -> tuple[Path, FloatAr
     latest = latest_result(cell_file, step_names.CHECK)
     if latest is not None and latest[1].get("hand_eye") == calibrated.folder.name:
         folder, table = latest
+        _refuse_moved(cell_file, str(table["time"]))
         if "T_base_board" in table:
             with reading(folder):
                 return folder, np.array(table["T_base_board"], dtype=float).reshape(4, 4)
@@ -123,6 +124,17 @@ def _checked(cell_file: Path, calibrated: CalibratedCell) -> tuple[Path, FloatAr
         f"Where the board lies was not seen since {cell_file} was calibrated; do the step 'check' first, and "
         "leave the board where it is."
     )
+
+
+def _refuse_moved(cell_file: Path, checked: str) -> None:
+    """Refuse a board that was laid elsewhere for another step since that time (ISO 8601, UTC)."""
+    for step in (step_names.TABLE, step_names.REFERENCE):
+        later = latest_result(cell_file, step)
+        if later is not None and str(later[1].get("time", "")) > checked:
+            raise InputError(
+                f"The board was laid elsewhere for the step '{step}' since it was checked; do the "
+                "step 'check' again, and touch it then."
+            )
 
 
 def _guided_in_simulation(calibrated: CalibratedCell, tip_m: FloatArray, n_before: int) -> FloatArray:

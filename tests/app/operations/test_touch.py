@@ -10,6 +10,7 @@ from app.operations.calibration.check import check_cell, simulated_place
 from app.operations.calibration.hand_eye import calibrate_cell
 from app.operations.calibration.provenance import RESULT
 from app.operations.calibration.steps import StepState, enter_board, steps
+from app.operations.calibration.table import measure_table
 from app.operations.calibration.touch import TOUCHES, read_touch, read_touches
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
@@ -88,6 +89,16 @@ def test_a_tip_that_is_measured_wrong_is_refused_and_nothing_is_kept(checked, mo
     with pytest.raises(StageError, match="from the nearest corner"):
         read_touch(path, TIP_M)
     assert read_touches(folder) == []
+
+
+def test_a_board_that_was_laid_elsewhere_since_is_not_touched_any_more(checked):
+    path, folder = checked
+    measure_table(path, Reporter(), None, lambda: None)
+    with pytest.raises(InputError, match="laid elsewhere for the step 'table'"):
+        read_touch(path)
+    assert read_touches(folder) == []
+    undo(path, "table")
+    assert read_touch(path).touch.is_good
 
 
 @pytest.mark.parametrize("tip_m", [(0.0, 0.0, 0.6), (np.nan, 0.0, 0.2)])
