@@ -151,7 +151,9 @@ class CellWork(ScanWork):
         with self._under_way(reporter) as running:
             looks = _LookReporter(reporter, settings, n_wanted)
             opened = partial(watched_cell, running, progress)
-            observer = CaptureObserver(opened, looks.planned, looks.taken, is_watching=True)
+            observer = CaptureObserver(
+                opened, looks.planned, looks.taken, is_watching=True, control=running.control
+            )
             work(PausingOperator(running), observer)
 
 

@@ -165,14 +165,15 @@ class ScanRun:
 
     def _move(self, cell: Cell, purpose: str = "") -> WatchedMoving | None:
         """How a real arm moves in a cell; none: as one that is not real."""
-        from hardware.scanning.moving import WatchedMoving
+        from hardware.scanning.moving import CONFIRMED, WatchedMoving
 
         if self._watch is None:
             return None
         operator, robot = self._watch.operator, cell.robot.name
 
-        def confirm(route: ScanRoute) -> None:
+        def confirm(route: ScanRoute) -> str:
             operator.confirm_route(replace(route, purpose=purpose or self._purpose), robot)
+            return CONFIRMED
 
         self._moving = WatchedMoving(cell, self._watch.log, self._reporter, confirm)
         return self._moving

@@ -9,6 +9,7 @@ import numpy as np
 from core.calibration.board import BoardSpec
 from core.geometry import FloatArray, invert_pose
 from core.motion.arm_models import ArmModel
+from core.motion.kinematics import flange_pose
 from hardware.interfaces import CameraImage, Robot
 from hardware.simulation.board_view import BoardLook, BoardPainter, lying_board
 from hardware.simulation.depth_camera import HEIGHT, WIDTH, SimulatedDepthCamera
@@ -42,7 +43,7 @@ class SimulatedBoardCamera:
     ) -> None:
         """Hang at the flange as the set-up says; `board` has the squares that it really has."""
         self.name = "simulated camera"
-        self._robot, self._arm, self._set_up, self._board = robot, arm, set_up, board
+        self._robot, self._arm, self._set_up, self._board = robot, set_up.own_arm(arm), set_up, board
         self._sensor = SimulatedDepthCamera(world, noise)
         self._noise = noise
         lens = set_up.lens(self._sensor.intrinsics)
@@ -65,7 +66,7 @@ class SimulatedBoardCamera:
         joints = self._robot.state().joints_rad
         place = [int(step) + 1_000_000 for step in np.round(joints / _JOINT_STEP_RAD)]
         seed = self._set_up.seed
-        flange = self._set_up.own_flange_pose(self._arm, joints)
+        flange = flange_pose(self._arm, joints)
         flange = self._set_up.flexed(flange, np.random.default_rng([seed, *place, _POSE_STREAM]))
         T_base_camera = flange @ self._set_up.camera_pose
         self._n_shots += 1

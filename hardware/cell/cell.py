@@ -14,6 +14,7 @@ from core.motion.clearance import MotionScene
 from hardware.cameras.replay import ReplayCamera
 from hardware.cell.devices import real_arm, real_gripper, scan_devices, simulated_gripper, ur_robot
 from hardware.cell.gripper_settings import Joints
+from hardware.cell.own_arm import measured_in_simulation
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import CellSettings
 from hardware.interfaces import Camera, Gripper, Robot
@@ -153,6 +154,7 @@ def _open_simulated(settings: CellSettings, joints_rad: npt.ArrayLike | None) ->
         np.asarray(robot.home_rad if joints_rad is None else joints_rad, dtype=float).tolist(),
         simulation.speed_up,
         robotiq=settings.gripper.model,
+        measured=measured_in_simulation(settings),
     )
     arm = ur_robot(settings, controller.address, f"simulated {robot.model}")
     gripper = simulated_gripper(settings.gripper, arm, simulation.speed_up)

@@ -15,6 +15,7 @@ from hardware.cameras.realsense import RealSenseCamera
 from hardware.cameras.replay import ReplayCamera
 from hardware.cameras.simulated import SimulatedCamera
 from hardware.cell.gripper_settings import GripperSettings
+from hardware.cell.own_arm import own_kinematics
 from hardware.cell.settings import ARMS, CameraSettings, CellSettings
 from hardware.grippers.robotiq import RobotiqGripper
 from hardware.grippers.robotiq_line import RobotiqAddress
@@ -135,7 +136,7 @@ def _of_kind(builders: Mapping[str, Builder], device: str, kind: str) -> Builder
 def _kinematic(settings: CellSettings) -> KinematicRobot:
     robot = settings.robot
     return KinematicRobot(
-        ARMS[robot.model], robot.home_rad, settings.simulation.is_instant, settings.gripper.grasp_pose
+        own_kinematics(settings), robot.home_rad, settings.simulation.is_instant, settings.gripper.grasp_pose
     )
 
 

@@ -6,19 +6,27 @@ import numpy as np
 
 from core.errors import InputError
 from core.geometry import FloatArray
+from core.motion.factory_calibration import MeasuredKinematics
 from hardware.cell.settings import ARMS, CellSettings
 from hardware.errors import RobotError
 from hardware.interfaces import Kinematics
 from hardware.robots.ur.glance import glance
-from hardware.robots.ur.own_kinematics import read_kinematics
+from hardware.robots.ur.own_kinematics import as_measured, read_kinematics
 
 
 def own_kinematics(settings: CellSettings) -> Kinematics:
     """Return the kinematics of a cell's arm: its own, where a controller tells them."""
     published = ARMS[settings.robot.model]
-    if not settings.robot.is_real:
-        return Kinematics(published)
-    return read_kinematics(_address(settings), published)
+    if settings.robot.is_real:
+        return read_kinematics(_address(settings), published)
+    measured = measured_in_simulation(settings)
+    return Kinematics(published) if measured is None else as_measured(published, measured)
+
+
+def measured_in_simulation(settings: CellSettings) -> MeasuredKinematics | None:
+    """Return what the maker of a cell's simulated arm measured; none: it is as published."""
+    set_up = settings.simulation.set_up
+    return None if set_up is None else set_up.measured(ARMS[settings.robot.model])
 
 
 def why_other_arm(settings: CellSettings, kinematics: Kinematics) -> str:

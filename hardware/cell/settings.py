@@ -311,6 +311,11 @@ class CellSettings(Group):
 
     @model_validator(mode="after")
     def _devices_fit(self) -> CellSettings:
+        if self.simulation.set_up is not None:
+            try:
+                self.simulation.set_up.own_arm(ARMS[self.robot.model])
+            except MotionError as error:
+                raise ValueError(f"lower the link errors of simulation.set_up: {error}") from error
         if (self.camera.kind == "replay") != (self.robot.kind == "replay"):
             raise ValueError("camera and robot must both be of kind 'replay', or neither")
         if self.gripper.kind == "robotiq" and self.robot.kind == "replay":

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from core.geometry import FloatArray
-from core.motion.arm_models import ArmModel
 from core.motion.kinematics import flange_pose
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
@@ -27,18 +26,20 @@ class KinematicRobot:
 
     Attributes:
         name: the model, marked as simulated.
+        kinematics: by which its flange is where it says.
     """
 
     def __init__(
         self,
-        arm: ArmModel,
+        kinematics: Kinematics,
         joints_rad: npt.ArrayLike,
         is_instant: bool,
         T_flange_tool: FloatArray | None = None,
     ) -> None:
         """Begin at rest at `joints_rad` (6,), with a tool frame (4, 4), by default the flange's."""
-        self.name = f"simulated {arm.name}"
-        self._arm = arm
+        self.kinematics = kinematics
+        self._arm = kinematics.model
+        self.name = f"simulated {self._arm.name}"
         self._is_instant = is_instant
         self._T_flange_tool = np.eye(4) if T_flange_tool is None else T_flange_tool
         self._is_stopped = False
@@ -51,11 +52,6 @@ class KinematicRobot:
 
     def __exit__(self, *exception: object) -> None:
         self._brake()
-
-    @property
-    def kinematics(self) -> Kinematics:
-        """As published: it is built so."""
-        return Kinematics(self._arm)
 
     def state(self) -> RobotState:
         """Return where the joints are now."""

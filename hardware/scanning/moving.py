@@ -28,8 +28,9 @@ MOVE_TIMEOUT_S = 60.0
 STOP_TIMEOUT_S = 1.5
 POLL_S = 0.02
 
-RouteConfirmed = Callable[[ScanRoute], None]
-"""Called with what the arm will do, before it does; raises `Cancelled` if it shall not."""
+RouteConfirmed = Callable[[ScanRoute], str]
+"""Called with what the arm will do, before it does; says how that was confirmed, or raises `Cancelled`."""
+CONFIRMED = "The route was confirmed."
 
 
 class Moving(Protocol):
@@ -89,8 +90,7 @@ class WatchedMoving:
         self._log.event("planned", route.sentence, views=[leg.view.name for leg in route.legs])
         self.was_stopped = False
         if route.n_views:
-            self._confirm(route)
-            self._log.event("confirmed", "The route was confirmed.")
+            self._log.event("confirmed", self._confirm(route))
         self._legs = {leg.view.name: leg for leg in route.legs}
 
     def go(self, view: PlannedView) -> None:

@@ -48,6 +48,8 @@ class BoardPainter:
         rows = (np.arange(height)[:, None] + step).ravel()
         grid = np.stack(np.meshgrid(columns, rows), axis=-1).reshape(-1, 2)
         self._rays = lens.rays(grid).reshape(len(rows), len(columns), 3)
+        pixels = np.stack(np.meshgrid(np.arange(width, dtype=float), np.arange(height)), axis=-1)
+        self._depth_rays = Lens(lens.intrinsics).rays(pixels.reshape(-1, 2)).reshape(height, width, 3)
         cells = board.cells()
         self._ink = np.where(cells, _INK, _PAPER).astype(np.float32)
         self._cells_per_m = cells.shape[1] / board.size_m[0]
@@ -68,12 +70,13 @@ class BoardPainter:
             random: of the noise.
 
         Returns:
-            the image (H, W, 3), and the board's depth (H, W) in metres, infinite where it is not.
+            the image (H, W, 3) as the lens shows it, and the board's depth (H, W) in metres, as drivers give
+            it: where a pinhole sees it, infinite elsewhere.
         """
         import cv2
 
         height, width = background.shape[:2]
-        reach, on_board, u, v = self._hits(T_camera_board)
+        _, on_board, u, v = self._hits(T_camera_board, self._rays)
         if look.is_mirrored:
             u = self._ink.shape[1] - 1 - u
         seen = cv2.remap(
@@ -87,13 +90,15 @@ class BoardPainter:
         )
         small = background * (1 - share) + ink
         noise = random.standard_normal((height, width, 3), dtype=np.float32) * look.noise_levels
-        middle = reach[_FINE // 2 :: _FINE, _FINE // 2 :: _FINE]
-        return np.clip(small + noise, 0, 255).astype(np.uint8), middle
+        depth_m = self._hits(T_camera_board, self._depth_rays)[0]
+        return np.clip(small + noise, 0, 255).astype(np.uint8), depth_m
 
-    def _hits(self, T_camera_board: FloatArray) -> tuple[FloatArray, BoolArray, FloatArray, FloatArray]:
-        """Depth, whether the paper is met, and the place in cells, of all fine rays."""
+    def _hits(
+        self, T_camera_board: FloatArray, rays: FloatArray
+    ) -> tuple[FloatArray, BoolArray, FloatArray, FloatArray]:
+        """Depth, whether the paper is met, and the place in cells, of rays (H, W, 3) from the camera."""
         T_board_camera = invert_pose(T_camera_board)
-        origin, rays = T_board_camera[:3, 3], self._rays @ T_board_camera[:3, :3].T
+        origin, rays = T_board_camera[:3, 3], rays @ T_board_camera[:3, :3].T
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = -origin[2] / rays[..., 2]
             x = origin[0] + reach * rays[..., 0]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import struct
+import zlib
+from collections.abc import Sequence
 from math import radians
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy as np
 from core.calibration.lens import Lens
 from core.geometry import FloatArray, make_pose
 from core.motion.arm_models import ArmModel
+from core.motion.factory_calibration import MeasuredKinematics, calibrated
 from core.parameters.fields import OURS, Group, choice, quantity
 from core.scan.model import Intrinsics
 
@@ -68,18 +71,33 @@ class SetUp(Group):
         """Return the lens before the image sensor."""
         return Lens(intrinsics, self.distortion)
 
-    def own_flange_pose(self, arm: ArmModel, joints_rad: FloatArray) -> FloatArray:
-        """Return where (4, 4) this very arm's flange is, whose links differ from the published ones."""
-        from core.motion.kinematics import flange_pose
+    def measured(self, arm: ArmModel) -> MeasuredKinematics | None:
+        """Return what the maker of this very arm measured, as its controller tells; none: it is as published.
 
+        Args:
+            arm: as published.
+        """
+        if not (self.link_error_m or self.link_error_rad):
+            return None
         random = np.random.default_rng([self.seed, 1])
         a_m, d_m = (
-            np.array(nominal) + random.normal(0, self.link_error_m, 6) for nominal in (arm.a_m, arm.d_m)
+            (np.array(nominal) + random.normal(0, self.link_error_m, 6)).tolist()
+            for nominal in (arm.a_m, arm.d_m)
         )
-        twists = np.array(arm.alpha_rad) + random.normal(0, self.link_error_rad, 6)
-        zeros = random.normal(0, self.link_error_rad, 6)
-        own = replace(arm, a_m=tuple(a_m), d_m=tuple(d_m), alpha_rad=tuple(twists))
-        return flange_pose(own, joints_rad + zeros)
+        alpha_rad = (np.array(arm.alpha_rad) + random.normal(0, self.link_error_rad, 6)).tolist()
+        theta_rad = random.normal(0, self.link_error_rad, 6).tolist()
+        rows = list(zip(theta_rad, a_m, d_m, alpha_rad, strict=True))
+        checksum = tuple(link_checksum(row) for row in rows)
+        return MeasuredKinematics(tuple(theta_rad), tuple(a_m), tuple(d_m), tuple(alpha_rad), checksum)
+
+    def own_arm(self, arm: ArmModel) -> ArmModel:
+        """Return the model of this very arm, from the published one.
+
+        Raises:
+            MotionError: its links differ by more than those of one arm do from another's.
+        """
+        measured = self.measured(arm)
+        return arm if measured is None else calibrated(arm, measured)
 
     def flexed(self, T_base_flange: FloatArray, random: np.random.Generator) -> FloatArray:
         """Return where the flange ends up that should be at a pose (4, 4)."""
@@ -100,3 +118,8 @@ def random_camera_pose(
     turn *= most_rad * random.uniform() ** (1 / 3) / np.linalg.norm(turn)
     shift *= most_m * random.uniform() ** (1 / 3) / np.linalg.norm(shift)
     return T_flange_camera @ make_pose(Rotation.from_rotvec(turn).as_matrix(), shift)
+
+
+def link_checksum(link: Sequence[float]) -> int:
+    """What tells one arm's link from another's: of its theta, a, d and alpha."""
+    return zlib.crc32(struct.pack(">4d", *link))

@@ -7,7 +7,7 @@ import numpy as np
 from core.errors import MotionError
 from core.geometry import FloatArray, make_pose, rotation_z, transform_points
 from core.motion.arm_models import ArmModel
-from core.motion.kinematics import inverse_kinematics
+from core.motion.kinematics import flange_pose, inverse_kinematics
 from hardware.simulation.set_up import SetUp
 
 _TURNS = [
@@ -33,7 +33,7 @@ def joints_on_point(
     Raises:
         MotionError: the arm does not reach it.
     """
-    flexing = set_up.flexed(np.eye(4), random)
+    own, flexing = set_up.own_arm(arm), set_up.flexed(np.eye(4), random)
     for turn in _TURNS:
         aim_m = point_m
         for _ in range(_STEPS):
@@ -41,7 +41,7 @@ def joints_on_point(
             if not found.found.any():
                 break
             joints_rad = found.joints_rad[0, int(found.found[0].argmax())]
-            tip_there_m = transform_points(set_up.own_flange_pose(arm, joints_rad) @ flexing, tip_m)
+            tip_there_m = transform_points(flange_pose(own, joints_rad) @ flexing, tip_m)
             aim_m = aim_m + point_m - tip_there_m
         else:
             return np.asarray(joints_rad)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from app.operations.animating import animated
 from app.operations.arm import connected
+from app.operations.calibration.confirming import RouteQuestions
 from app.operations.calibration.provenance import new_run, write_looks
 from app.operations.scan_run import ScanOperator
 from core.calibration.board import BoardSpec
@@ -31,6 +32,7 @@ from hardware.errors import CameraError, CameraLost
 from hardware.interfaces import CameraImage
 from hardware.pouring.run_log import RunLog
 from hardware.scanning.moving import Moving, PlainMoving, WatchedMoving
+from hardware.scanning.procedure import ScanControl
 from hardware.scanning.views import PlannedView
 
 _STILL_RAD = 2e-4
@@ -50,12 +52,14 @@ class CaptureObserver:
         planned: called with the poses of each round, in their order, before the first one is gone to.
         taken: called with each look, how many usable views there are by now, and its image, if there is one.
         is_watching: whether a simulated arm moves where it would jump.
+        control: lets it wait between two views.
     """
 
     opened: Callable[[Cell], AbstractContextManager[object]] = lambda cell: nullcontext(cell)
     planned: Callable[[Sequence[Proposal]], None] = lambda poses: None  # noqa: ARG005
     taken: Callable[[Look, int, CameraImage | None], None] = lambda look, n_usable, image: None  # noqa: ARG005
     is_watching: bool = False
+    control: ScanControl = field(default_factory=ScanControl)
 
 
 NOBODY = CaptureObserver()
@@ -72,6 +76,7 @@ class Capture:
         collection: the looks so far.
         lens: of the camera.
         moving: brings the arm to poses.
+        questions: to whoever confirms what a real arm does; none: nothing real moves.
         reporter: may cancel.
         observer: follows.
     """
@@ -82,6 +87,7 @@ class Capture:
     collection: Collection
     lens: Lens
     moving: Moving
+    questions: RouteQuestions | None
     reporter: Reporter
     observer: CaptureObserver
 
@@ -105,7 +111,7 @@ class Capture:
         self.observer.planned(poses)
         self.moving.prepare(views)
         for view, pose in zip(views, poses, strict=True):
-            self.reporter.raise_if_cancelled()
+            self.observer.control.wait_while_paused(self.reporter)
             try:
                 self.moving.go(view)
             except MotionError as error:
@@ -121,6 +127,7 @@ class Capture:
             PoursightError: see `go_and_look`; there is no clear way.
         """
         view = PlannedView("look", tuple(joints_rad.tolist()))
+        self.observer.control.wait_while_paused(self.reporter)
         self.moving.prepare([view])
         self.moving.go(view)
         self._rest()
@@ -235,11 +242,12 @@ def capturing_in(
         first = cell.camera.capture()
         folder = new_run(cell_file, step)
         moving: Moving = PlainMoving(cell, reporter)
+        questions: RouteQuestions | None = None
         if settings.robot.is_real:
             assert operator is not None, "refused before it was connected"
             log = stack.enter_context(RunLog(folder / "motion"))
-            name = cell.robot.name
-            moving = WatchedMoving(cell, log, reporter, lambda route: operator.confirm_route(route, name))
+            questions = RouteQuestions(operator, cell.robot.name)
+            moving = WatchedMoving(cell, log, reporter, questions)
         set_up = settings.simulation.set_up
         lens = Lens(first.intrinsics) if set_up is None else set_up.lens(first.intrinsics)
         height, width = first.depth_m.shape
@@ -255,7 +263,7 @@ def capturing_in(
             "intrinsics": [i.fx, i.fy, i.cx, i.cy],
             "size_px": [width, height],
         }
-        yield Capture(cell, folder, facts | known, collection, lens, moving, reporter, observer)
+        yield Capture(cell, folder, facts | known, collection, lens, moving, questions, reporter, observer)
 
 
 def find_board(capture: Capture) -> None:
@@ -283,20 +291,26 @@ def find_board(capture: Capture) -> None:
 
 
 def take_rounds(capture: Capture) -> None:
-    """Go through rounds of proposed poses until there are enough usable views.
+    """Go through rounds of proposed poses until there are enough usable views; one confirmation is for all.
 
     Raises:
         PoursightError: see `Capture.go_and_look`.
     """
-    n_round = 0
-    while True:
-        capture.reporter.raise_if_cancelled()
-        here = np.array(capture.cell.robot.state().joints_rad)
-        poses = capture.collection.next_poses(here, n_round)
-        if not poses:
-            return
-        capture.go_and_look(poses)
-        n_round += 1
+    n_wanted, limit_m_s = capture.collection.n_wanted, capture.cell.settings.motion.tool_speed_m_s
+    purpose = (
+        f"Up to {n_wanted} views of the board, a few at a time: each route is planned and checked like this "
+        f"one, is driven at most at {limit_m_s:.2f} m/s, and is not asked about again. The first: "
+    )
+    with nullcontext() if capture.questions is None else capture.questions.once(purpose):
+        n_round = 0
+        while True:
+            capture.reporter.raise_if_cancelled()
+            here = np.array(capture.cell.robot.state().joints_rad)
+            poses = capture.collection.next_poses(here, n_round)
+            if not poses:
+                return
+            capture.go_and_look(poses)
+            n_round += 1
 
 
 def _refuse_other_squares(square_m: float | None, board: BoardSpec) -> None:

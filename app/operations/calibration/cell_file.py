@@ -26,6 +26,10 @@ CELLS_VARIABLE = "POURSIGHT_CELLS"
 """The environment variable that names another folder."""
 _REAL_CELL = CELL_FOLDER / "ur5_example.toml"
 _BOARD_OFF_PLATFORM_M = (0.03, -0.02, 0.004)
+_LINK_ERROR_M, _LINK_ERROR_RAD = 0.0006, 0.0006
+"""As the arms of `make own-kinematics`, whose tool is some 2 mm beside where published kinematics have it."""
+_DISTORTION = (0.12, -0.25, 0.0008, -0.0006, 0.0)
+"""Some pixels towards the image's corners, as of a small colour camera."""
 _OF_ARM = ("kinematics_checksum", "own_kinematics")
 _DIGITS = 9
 _LONGEST_NAME = 100
@@ -62,7 +66,8 @@ def known_cells() -> tuple[Path, ...]:
 def new_cell(name: str, is_simulated: bool, seed: int = 0, address: str | None = None) -> Path:
     """Write a new cell's file, to be completed step by step; return its path.
 
-    A simulated cell's camera really hangs up to 20 mm and 10 degrees beside where the file believes.
+    A simulated cell's camera really hangs up to 20 mm and 10 degrees beside where the file believes, its lens
+    distorts, and its arm's links are not those that are published.
 
     Args:
         name: of the cell.
@@ -215,5 +220,7 @@ def _simulated_set_up(settings: CellSettings, seed: int) -> Any:
     table["T_flange_camera"] = _matrix(random_camera_pose(settings.camera.pose, seed))
     middle_m = settings.place.platform_center_m + _BOARD_OFF_PLATFORM_M
     table["board_middle_m"] = [round(value, 6) for value in middle_m.tolist()]
+    table["link_error_m"], table["link_error_rad"] = _LINK_ERROR_M, _LINK_ERROR_RAD
+    table["distortion"] = list(_DISTORTION)
     table["seed"] = seed
     return table

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from core.errors import MotionError
 from core.motion.arm_models import ArmModel
-from core.motion.factory_calibration import calibrated
+from core.motion.factory_calibration import MeasuredKinematics, calibrated
 from hardware.interfaces import Kinematics
 from hardware.robots.ur.primary_interface import PRIMARY_PORT, DamagedPackage, receive_kinematics
 
@@ -17,8 +17,7 @@ def read_kinematics(address: str, arm: ArmModel) -> Kinematics:
         arm: as published.
     """
     try:
-        measured = receive_kinematics(address)
-        model = calibrated(arm, measured)
+        return as_measured(arm, receive_kinematics(address))
     except (OSError, DamagedPackage, MotionError) as error:
         return Kinematics(
             arm,
@@ -26,4 +25,17 @@ def read_kinematics(address: str, arm: ArmModel) -> Kinematics:
             f"so those published for a {arm.name} are used, which may put the tool 1 to 3 mm off its place; "
             f"allow the primary interface (port {PRIMARY_PORT}) on the controller, then connect again.",
         )
-    return Kinematics(model, "-".join(f"{number:08x}" for number in measured.checksum), measured)
+
+
+def as_measured(arm: ArmModel, measured: MeasuredKinematics) -> Kinematics:
+    """Return the kinematics of an arm that its maker measured.
+
+    Args:
+        arm: as published.
+        measured: that calibration.
+
+    Raises:
+        MotionError: it is of no arm of that model.
+    """
+    checksum = "-".join(f"{number:08x}" for number in measured.checksum)
+    return Kinematics(calibrated(arm, measured), checksum, measured)

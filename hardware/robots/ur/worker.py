@@ -65,6 +65,8 @@ _BRAKE_WITHIN_S = 0.12
 _BRAKE_LIMITS_RAD_S2 = 5.0, 30.0
 _REASON_S = 0.06
 """The safety system's word may come some cycles after the program has ended because of it."""
+_LONGEST_REASON_S = 0.3
+"""An arm whose power was switched off says so when its brakes have brought it to rest."""
 _TAKEN_S = 1.0
 _SAME = 1e-4
 _HEARD_S = 0.2
@@ -311,14 +313,17 @@ class _Worker:
 
     def _reason(self, error: RobotError, meanwhile: Callable[[], None] = lambda: None) -> RobotError:
         """The gravest thing to be seen just after something went wrong."""
+        latest_s = time.monotonic() + _LONGEST_REASON_S
         deadline_s = time.monotonic() + _REASON_S
-        while time.monotonic() < deadline_s:
+        while (now_s := time.monotonic()) < deadline_s:
             graver = unsafe(self._latest)
             if graver is not None:
                 return graver
             also = deviation(self._latest)
             if isinstance(also, ProgramStopped):
                 error = also
+                if np.abs(self._latest["joint_speeds_rad_s"]).max() > RESTING_RAD_S:
+                    deadline_s = min(now_s + _REASON_S, latest_s)
             meanwhile()
             time.sleep(_IDLE_S)
         return error

@@ -8,6 +8,7 @@ from enum import IntEnum
 import numpy.typing as npt
 
 from core.motion.arm_models import ArmModel
+from core.motion.factory_calibration import MeasuredKinematics, calibrated
 from hardware.modes import RobotMode, SafetyMode
 from hardware.simulation.ur_controller.arm import STOP_RAD_S2, Arm
 from hardware.simulation.ur_controller.foreign import ForeignProgram
@@ -43,6 +44,7 @@ class Controller:
 
     Attributes:
         identity: which controller it is.
+        measured: its arm's own kinematics; none: they are the model's.
         dt_s: one cycle.
         time_s: the controller's own clock.
         arm: the arm.
@@ -62,12 +64,16 @@ class Controller:
         hand: a Robotiq gripper; none: there is none.
     """
 
-    def __init__(self, identity: Identity, joints_rad: npt.ArrayLike) -> None:
-        """Be switched on, brakes released, no program."""
+    def __init__(
+        self, identity: Identity, joints_rad: npt.ArrayLike, measured: MeasuredKinematics | None = None
+    ) -> None:
+        """Be switched on, brakes released, no program; the arm's own kinematics are as measured."""
         self.identity = identity
+        self.measured = measured
         self.dt_s = 1 / identity.rate_hz
         self.time_s = 0.0
-        self.arm = Arm(identity.model, joints_rad)
+        own = identity.model if measured is None else calibrated(identity.model, measured)
+        self.arm = Arm(own, joints_rad)
         self.registers = Registers()
         self.journal = Journal()
         self.robot_mode = RobotMode.RUNNING
@@ -249,6 +255,7 @@ class Controller:
     def set_model(self, model: ArmModel) -> None:
         """Be another arm from now on: a fault of the cell, found by its kinematics."""
         self.arm.model = model
+        self.measured = None
 
     def _takes_scripts(self) -> bool:
         is_ready = self.robot_mode is RobotMode.RUNNING and not self._switching

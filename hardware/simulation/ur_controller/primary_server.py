@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import asyncio
 import struct
-import zlib
 
 from core.motion.arm_models import ArmModel
+from core.motion.factory_calibration import MeasuredKinematics
 from hardware.robots.ur.pose_vectors import vector_from_pose
+from hardware.simulation.set_up import link_checksum
 from hardware.simulation.ur_controller.arm import Arm
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.identity import MODELS, Identity
@@ -57,7 +58,11 @@ class PrimaryLink(Link):
         arm = self._controller.arm
         pose = struct.pack(">12d", *arm.tcp_pose(arm.joints_rad), *vector_from_pose(arm.T_flange_tcp))
         self.send(
-            robot_state(_package(_CARTESIAN_INFO, pose), kinematics_info(arm.model), configuration_data(arm))
+            robot_state(
+                _package(_CARTESIAN_INFO, pose),
+                kinematics_info(arm.model, self._controller.measured),
+                configuration_data(arm),
+            )
         )
         self._next = asyncio.get_running_loop().call_later(_EVERY_S, self._send_state)
 
@@ -67,13 +72,15 @@ def robot_state(*parts: bytes) -> bytes:
     return _package(_ROBOT_STATE, b"".join(parts))
 
 
-def kinematics_info(arm: ArmModel) -> bytes:
-    """The sub-package of an arm's Denavit-Hartenberg parameters; one as published is not calibrated."""
-    rows = list(zip((0.0,) * 6, arm.a_m, arm.d_m, arm.alpha_rad, strict=True))
-    is_published = arm == MODELS[arm.name]
-    checksums = [_NOT_CALIBRATED if is_published else zlib.crc32(struct.pack(">4d", *row)) for row in rows]
-    numbers = [number for column in zip(*rows, strict=True) for number in column]
-    return _package(_KINEMATICS_INFO, struct.pack(">6I24dI", *checksums, *numbers, _STATUS))
+def kinematics_info(arm: ArmModel, measured: MeasuredKinematics | None = None) -> bytes:
+    """The sub-package of an arm's Denavit-Hartenberg parameters: as measured, else those of its model."""
+    if measured is None:
+        rows = list(zip((0.0,) * 6, arm.a_m, arm.d_m, arm.alpha_rad, strict=True))
+        is_published = arm == MODELS[arm.name]
+        checksum = tuple(_NOT_CALIBRATED if is_published else link_checksum(row) for row in rows)
+        measured = MeasuredKinematics((0.0,) * 6, arm.a_m, arm.d_m, arm.alpha_rad, checksum)
+    numbers = [*measured.theta_rad, *measured.a_m, *measured.d_m, *measured.alpha_rad]
+    return _package(_KINEMATICS_INFO, struct.pack(">6I24dI", *measured.checksum, *numbers, _STATUS))
 
 
 def configuration_data(arm: Arm) -> bytes:

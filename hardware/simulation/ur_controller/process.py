@@ -13,6 +13,7 @@ from threading import Lock
 
 from core.child_process import ChildProcess
 from core.errors import PoursightError
+from core.motion.factory_calibration import MeasuredKinematics
 from hardware.errors import RobotError
 from hardware.realtime import take_precedence
 from hardware.simulation.ur_controller.identity import CONTROL_PORT, HOME_RAD, identity
@@ -40,6 +41,7 @@ class ControllerProcess:
         speed_up: float = 1.0,
         faults: Sequence[str] = (),
         robotiq: str | None = None,
+        measured: MeasuredKinematics | None = None,
     ) -> None:
         """Choose a controller; entering the context starts it.
 
@@ -51,13 +53,14 @@ class ControllerProcess:
             speed_up: how many times faster than the wall clock its clock, motion and cycles run.
             faults: lines as for `command`, taken at the start.
             robotiq: model of a Robotiq gripper that is served beside it; none: there is none.
+            measured: the arm's own kinematics; none: they are as published.
 
         Raises:
             InputError: an unknown model, or a version that is none.
         """
         self.address = address or ""
         self._settings = ControllerSettings(
-            identity(model, version), address, tuple(joints_rad), speed_up, tuple(faults), robotiq
+            identity(model, version), address, tuple(joints_rad), speed_up, tuple(faults), robotiq, measured
         )
         self._process: ChildProcess | None = None
         self._socket: socket.socket | None = None

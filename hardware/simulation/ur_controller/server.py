@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from ipaddress import ip_address
 
 from core.errors import InputError
+from core.motion.factory_calibration import MeasuredKinematics
 from hardware.grippers.robotiq_line import ROBOTIQ_PORT
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.faults import FaultInjector, FaultRefused
@@ -45,6 +46,7 @@ class ControllerSettings:
         speed_up: how many times faster than the wall clock the controller's clock runs.
         faults: lines for the fault injector, taken at the start.
         robotiq: model of the Robotiq gripper that is served; none: there is none.
+        measured: the arm's own kinematics; none: they are as published.
     """
 
     identity: Identity
@@ -53,6 +55,7 @@ class ControllerSettings:
     speed_up: float = 1.0
     faults: Sequence[str] = ()
     robotiq: str | None = None
+    measured: MeasuredKinematics | None = None
 
 
 class ControllerServer:
@@ -61,7 +64,7 @@ class ControllerServer:
     def __init__(self, settings: ControllerSettings) -> None:
         """Prepare; nothing listens yet."""
         self._settings = settings
-        self._controller = Controller(settings.identity, settings.joints_rad)
+        self._controller = Controller(settings.identity, settings.joints_rad, settings.measured)
         self._controller.speed_up = settings.speed_up
         if settings.robotiq is not None:
             self._controller.hand = RobotiqHand(settings.robotiq)

@@ -86,7 +86,9 @@ def test_a_bare_cell_becomes_a_calibrated_and_checked_one(cells):
     assert np.linalg.norm(error[3:]) < max(1.5 * found.bounds.position_m, 0.001)
     assert np.linalg.norm(log_pose(invert_pose(before.camera.pose) @ truth)[3:]) > 0.005
     assert comments(SIMULATED_CELL) == comments(path)[: len(comments(SIMULATED_CELL))]
-    assert after.model_copy(update={"camera": before.camera}) == before
+    assert after.model_copy(update={"camera": before.camera, "robot": before.robot}) == before
+    own = after.simulation.set_up.own_arm(UR5)
+    assert after.robot.arm == own != UR5, "what its maker measured is in the file"
     assert states(path) == {"board": StepState.DONE, "hand-eye": StepState.DONE, "check": StepState.OPEN}
     _, looks = read_looks(found.folder)
     assert len(list(found.folder.glob("view-*.png"))) == sum(look.view is not None for look in looks)

@@ -19,6 +19,7 @@ from hardware.cell import Arm, read_cell
 from hardware.cell.scene import motion_scene
 from hardware.cell.settings import ARMS
 from hardware.grippers.simulated import SimulatedGripper
+from hardware.interfaces import Kinematics
 from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
 from tests.app.sessions import quick_parameters
@@ -70,7 +71,9 @@ def test_the_operators_pour_is_the_target_and_everything_says_so(session, motion
     assert f"at {1000 * task.grid.indent_m[program.j]:.0f} mm)" in target.note
 
     tool = task.settings.gripper.grasp_pose
-    robot = KinematicRobot(ARMS[task.settings.robot.model], task.settings.robot.home_rad, True, tool)
+    robot = KinematicRobot(
+        Kinematics(ARMS[task.settings.robot.model]), task.settings.robot.home_rad, True, tool
+    )
     arm = Arm(task.settings, robot, SimulatedGripper(), motion_scene(task.settings))
     pouring = Pouring(arm, task.cell, target, session, Reporter())
     fresh = pouring.plan()

@@ -17,6 +17,7 @@ from core.calibration.board import BoardSpec
 from core.calibration.touching import MOST_OFF_M
 from core.errors import InputError, SessionError, StageError
 from core.geometry import transform_points
+from core.motion.kinematics import flange_pose
 from core.progress import Reporter
 from hardware.cell import read_cell
 from hardware.cell.calibrating import simulated_set_up
@@ -126,7 +127,6 @@ def test_a_simulated_hand_has_its_tip_where_the_corner_really_is(calibrated):
         joints_rad = joints_on_point(
             settings.robot.arm, set_up, TIP_M, point_m, np.random.default_rng(corner)
         )
-        flange = set_up.flexed(
-            set_up.own_flange_pose(settings.robot.arm, joints_rad), np.random.default_rng(corner)
-        )
+        own = set_up.own_arm(settings.robot.arm)
+        flange = set_up.flexed(flange_pose(own, joints_rad), np.random.default_rng(corner))
         np.testing.assert_allclose(transform_points(flange, TIP_M), point_m, atol=1e-5)

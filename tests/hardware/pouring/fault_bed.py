@@ -213,7 +213,7 @@ class Bed:
         self.pace(HURRIED)
 
     def _go(self, view) -> None:
-        moving = WatchedMoving(self.rig.arm, self._log, self.rig.reporter, lambda _: None)
+        moving = WatchedMoving(self.rig.arm, self._log, self.rig.reporter, lambda _: "confirmed")
         moving.prepare([view])
         moving.go(view)
 

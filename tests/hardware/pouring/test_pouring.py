@@ -18,6 +18,7 @@ from hardware.cell.settings import ARMS
 from hardware.driving import refuse_deviation, slowness
 from hardware.errors import DeviceError, OutputChanged, TrackingLost
 from hardware.grippers.simulated import SimulatedGripper
+from hardware.interfaces import Kinematics
 from hardware.modes import SafetyMode
 from hardware.pouring.pouring import Pouring
 from hardware.robots.kinematic import KinematicRobot
@@ -34,7 +35,7 @@ def fresh_plan(tmp_path_factory):
 
 def an_arm(gripper=None):
     tool = SETTINGS.gripper.grasp_pose
-    robot = KinematicRobot(ARMS[SETTINGS.robot.model], SETTINGS.robot.home_rad, True, tool)
+    robot = KinematicRobot(Kinematics(ARMS[SETTINGS.robot.model]), SETTINGS.robot.home_rad, True, tool)
     return Arm(SETTINGS, robot, gripper or SimulatedGripper(), motion_scene(SETTINGS))
 
 

@@ -13,7 +13,7 @@ from core.motion.kinematics import flange_pose
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import MoveRefused, RobotError, RobotStopped
 from hardware.grippers.simulated import SimulatedGripper
-from hardware.interfaces import RobotState
+from hardware.interfaces import Kinematics, RobotState
 from hardware.robots.kinematic import KinematicRobot
 
 HOME = np.array([0.0, -1.5, -0.6, -2.25, 1.5, 0.7])
@@ -28,7 +28,7 @@ TRAJECTORY = JointTrajectory(
 
 
 def robot(is_instant: bool = False) -> KinematicRobot:
-    return KinematicRobot(UR5, HOME, is_instant)
+    return KinematicRobot(Kinematics(UR5), HOME, is_instant)
 
 
 def watch(arm: KinematicRobot, for_s: float) -> list[RobotState]:
@@ -260,6 +260,6 @@ def test_instantly_it_is_at_the_end_of_a_timed_motion() -> None:
 def test_the_tool_is_at_the_flange_unless_said_otherwise() -> None:
     T_flange_tool = np.eye(4)
     T_flange_tool[:3, 3] = 0.01, -0.02, 0.15
-    state = KinematicRobot(UR5, HOME, True, T_flange_tool).state()
+    state = KinematicRobot(Kinematics(UR5), HOME, True, T_flange_tool).state()
     np.testing.assert_allclose(state.T_base_tool, flange_pose(UR5, HOME) @ T_flange_tool)
     np.testing.assert_array_equal(robot().state().T_base_tool, robot().state().T_base_flange)

@@ -30,7 +30,7 @@ def rig(tmp_path_factory):
 @pytest.fixture
 def moving(rig, tmp_path):
     with RunLog(tmp_path / "scan") as log:
-        yield WatchedMoving(rig.arm, log, rig.reporter, lambda _: None)
+        yield WatchedMoving(rig.arm, log, rig.reporter, lambda _: "confirmed")
 
 
 @pytest.mark.parametrize("fault", ["foreign moving", "protective stop", "jump 1 0.03"])
@@ -66,7 +66,7 @@ def test_what_makes_the_arm_slow_on_its_way_is_said_once(rig, tmp_path):
     reporter = Listening()
     view, home = name_views((rig.settings.scan.views_rad[0], rig.settings.robot.home_rad))
     with RunLog(tmp_path / "scan") as log:
-        moving = WatchedMoving(rig.arm, log, reporter, lambda _: None)
+        moving = WatchedMoving(rig.arm, log, reporter, lambda _: "confirmed")
         moving.prepare([view, home])
         moving.go(view)
         assert reporter.said == ()

@@ -46,7 +46,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         self._of: Path | None = None
         self._looks: list[BoardSought] = []
         self._planned: FloatArray = np.empty((0, 4, 4))
-        self._question = ""
+        self._question, self._can_pause, self._is_paused = "", False, False
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(SplitView(self.view, self.side))
@@ -145,6 +145,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         if isinstance(news, ScanQuestion):
             self._question = news.sentence
         elif isinstance(news, LooksPlanned):
+            self._can_pause = True
             self._planned = news.T_base_camera
             self._show_looks()
         elif isinstance(news, CameraSeen):
@@ -178,7 +179,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         """A job has ended: what it did is in the files."""
         if page == self.KEY:
             self._picked = step_names.CAMERA if self._work.is_live else ""
-            self._question = ""
+            self._question, self._can_pause, self._is_paused = "", False, False
             self.view.end_live()
             self._work.read_again()
 
@@ -199,8 +200,12 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
 
     def _press(self) -> None:
         form = self.side.form
-        if self._work.is_running:
-            self._question = ""
+        if self._work.is_running and not self._question and not self._is_paused:
+            self._is_paused = True
+            self._work.pause()
+            self.update_actions()
+        elif self._work.is_running:
+            self._question, self._is_paused = "", False
             self._work.resume()
             self.update_actions()
         elif self.is_new:
@@ -212,7 +217,8 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
 
     def _do(self, *, is_restarted: bool = False) -> None:
         step = self.step
-        self._looks, self._planned, self._question = [], np.empty((0, 4, 4)), ""
+        self._looks, self._planned = [], np.empty((0, 4, 4))
+        self._question, self._can_pause, self._is_paused = "", False, False
         try:
             words = step_words(step, self.desk.cell.is_simulated)
             self._work.do(step, words.title, self.side.options, is_restarted=is_restarted)
@@ -248,6 +254,8 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
             is_idle=desk.jobs.is_idle,
             is_simulated=desk.cell.is_simulated,
             is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
+            can_pause=self._can_pause,
+            is_paused=self._is_paused,
             question=self._question,
             looks=tuple(self._looks),
             n_planned=options.n_views,
@@ -269,7 +277,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         side.primary.setText(now.primary_text)
         can_begin = now.is_idle and not obstacle and now.contents is not None
         is_complete = side.form.is_complete if now.is_new else True
-        is_asked = now.is_running and bool(now.question)
+        is_asked = now.is_running and (bool(now.question) or now.can_pause)
         self.offer(side.primary, is_asked or not now.is_running, is_asked or (can_begin and is_complete))
         self.offer(side.undo, now.can_undo and not now.is_running, now.is_idle)
         self.offer(side.live, now.step == step_names.CAMERA and not now.is_running, can_begin)

@@ -40,6 +40,8 @@ class Situation:
         is_idle: whether no job is running.
         is_simulated: whether nothing real moves.
         is_arm_taken: whether the process that pours holds the real arm.
+        can_pause: whether the step under way goes from view to view by now.
+        is_paused: whether it was asked to wait.
         question: what the step under way waits for; empty if it does not.
         looks: at the board, of the step under way or the last one.
         n_planned: how many views of the board a calibration wants.
@@ -55,6 +57,8 @@ class Situation:
     is_idle: bool
     is_simulated: bool
     is_arm_taken: bool
+    can_pause: bool
+    is_paused: bool
     question: str
     looks: tuple[BoardSought, ...]
     n_planned: int
@@ -77,8 +81,10 @@ class Situation:
     @property
     def primary_text(self) -> str:
         """What the page's button does."""
-        if self.is_running:
+        if self.is_running and self.question:
             return translate("CellPage", "Go on")
+        if self.is_running:
+            return translate("CellPage", "Resume") if self.is_paused else translate("CellPage", "Pause")
         if self.is_new:
             return translate("CellPage", "Create the cell")
         chosen = self.chosen
@@ -169,6 +175,10 @@ def obstacle_of(now: Situation) -> str:
 def _running(now: Situation) -> Now:
     if now.question:
         return Now("stale", now.question, (translate("CellPage", "Go on says yes, Cancel says no."),))
+    if now.is_paused:
+        n = now.looks[-1].n_usable if now.looks else 0
+        said = translate("CellPage", "Paused: {n} views of the board so far.").format(n=n)
+        return Now("stale", said, (translate("CellPage", "The arm stops after the current view."),))
     if now.is_live:
         headline = translate("CellPage", "This is what the camera sees now.")
         return Now("running", headline, (translate("CellPage", "Hatched: no depth. Cancel ends it."),))

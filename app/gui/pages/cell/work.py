@@ -122,8 +122,12 @@ class CellJobs:
         undo = partial(undoing.undo, self._path(), step)
         self._desk.background.run(_IN_BACKGROUND, undo, lambda _: self.read_again())
 
+    def pause(self) -> None:
+        """Let the arm rest after the current view."""
+        self._desk.scan_host.order(CellWork.pause)
+
     def resume(self) -> None:
-        """Say yes to what a job asks."""
+        """Go on; where a job asks, that says yes."""
         self._desk.scan_host.order(CellWork.resume)
 
     def read_again(self) -> None:

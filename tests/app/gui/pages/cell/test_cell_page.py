@@ -34,6 +34,7 @@ from tests.app.gui.pages.cell.acting import (
 
 STEPS = ["arm", "camera", "board", "hand-eye", "check", "table", "views", "reference", "cup", "dry-run"]
 N_VIEWS = 8
+PAUSE_MS = 3000
 
 
 def test_of_the_shipped_cell_nothing_is_changed_but_a_new_one_is_offered(qtbot, desk, page, cells):
@@ -207,6 +208,27 @@ def test_a_cell_is_calibrated_killed_continued_checked_and_undone(qtbot, desk, p
     qtbot.waitUntil(lambda: states(page)["hand-eye"] == "empty")
     assert abs(desk.cell.settings.camera.pose - before).max() < 1e-8
     assert states(page)["check"] == "stale"
+
+
+@pytest.mark.system
+def test_a_calibration_is_paused_between_two_views_and_goes_on(qtbot, desk, page):
+    choose(qtbot, desk, page, measured_cell(seed=9))
+    pick(qtbot, page, "hand-eye")
+    page.findChild(QSpinBox, "n_looks").setValue(N_VIEWS)
+    press(qtbot, page)
+    qtbot.waitUntil(lambda: button(page).isVisible() and button(page).isEnabled())
+    assert button(page).text() == "Pause"
+    press(qtbot, page)
+    assert button(page).text() == "Resume" and text(page, "headline").startswith("Paused: ")
+    qtbot.wait(PAUSE_MS)  # the view under way may still end
+    n = len(page._looks)
+    qtbot.wait(PAUSE_MS)
+    assert len(page._looks) == n and not desk.jobs.is_idle
+    press(qtbot, page)
+    assert button(page).text() == "Pause" and text(page, "headline").startswith("Looking at the board: ")
+    qtbot.waitUntil(lambda: desk.jobs.is_idle)
+    settle(qtbot, desk, page)
+    assert states(page)["hand-eye"] == "fresh"
 
 
 @pytest.mark.system
