@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from core.geometry import FloatArray
-from core.scan.model import Intrinsics
+from core.scan.model import ColorImage, Intrinsics
 
 
 @dataclass(frozen=True)
@@ -41,6 +41,14 @@ class Lens:
             flat, np.zeros(3), np.zeros(3), self.intrinsics.matrix, np.array(self.distortion)
         )
         return np.asarray(image.reshape(-1, 2), dtype=float)
+
+    def as_pinhole(self, color: ColorImage) -> ColorImage:
+        """Return the image (H, W, 3) that a pinhole would show, of one that the lens shows."""
+        if not any(self.distortion):
+            return color
+        import cv2
+
+        return np.asarray(cv2.undistort(color, self.intrinsics.matrix, np.array(self.distortion)))
 
     @cached_property
     def _middle(self) -> FloatArray:

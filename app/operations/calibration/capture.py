@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +50,8 @@ class CaptureObserver:
     Attributes:
         opened: called with the cell; what it returns is entered while the cell's devices are connected.
         planned: called with the poses of each round, in their order, before the first one is gone to.
-        taken: called with each look, how many usable views there are by now, and its image, if there is one.
+        taken: called with each look, how many usable views there are by now, and its image as a pinhole
+            shows it, if there is one.
         is_watching: whether a simulated arm moves where it would jump.
         control: lets it wait between two views.
     """
@@ -151,6 +152,9 @@ class Capture:
             import cv2  # late: it costs the window memory
 
             png = cv2.imencode(".png", cv2.cvtColor(image.color, cv2.COLOR_RGB2BGR))[1].tobytes()
+            image = replace(
+                image, color=self.lens.as_pinhole(image.color)
+            )  # where corners are where they are said
         write_looks(self.folder, self.facts, self.collection.looks, png)
         self.observer.taken(look, len(self.collection.views), image)
         return look

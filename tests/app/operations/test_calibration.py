@@ -22,6 +22,8 @@ from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.undoing import undo
 from core.calibration.board import BoardSpec
 from core.calibration.collecting import Collection
+from core.calibration.detection import detect_board, gray
+from core.calibration.lens import Lens
 from core.calibration.rig import exp_pose, log_pose
 from core.errors import Cancelled, InputError, Remedy, StageError
 from core.geometry import invert_pose
@@ -63,6 +65,25 @@ def calibrated(path, reporter=None, **options):
 
 def comments(path):
     return [line.split("#")[1] for line in path.read_text().splitlines() if "#" in line]
+
+
+def test_who_follows_sees_the_corners_where_they_are_said_to_be():
+    path = measured_cell(seed=1)
+    seen = []
+
+    def taken(look, n_usable, image):
+        if look.view is not None:
+            seen.append((look.view, image))
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        calibrated(path, observer=CaptureObserver(taken=taken))
+    [(view, image)] = seen
+    assert any(read_cell(path).simulation.set_up.distortion)
+    found = detect_board(gray(image.color), BoardSpec(), Lens(image.intrinsics))
+    common, here, there = np.intersect1d(found.ids, view.ids, return_indices=True)
+    off_px = np.linalg.norm(found.corners_px[here] - view.corners_px[there], axis=1)
+    assert len(common) > 10 and np.median(off_px) < 0.3, off_px.round(2)
 
 
 @pytest.mark.system
