@@ -85,8 +85,10 @@ def _identity(address: str) -> tuple[str, str]:
 def examine_gripper(settings: CellSettings) -> Finding:
     """Say what holds the cup; a Robotiq gripper is asked how it is."""
     gripper, robot = settings.gripper, settings.robot
-    if gripper.kind != "robotiq":
-        return Finding("gripper", f"{gripper.kind}, output {gripper.output}")
+    if gripper.kind == "simulated":
+        return Finding("gripper", "simulated")
+    if gripper.kind == "ur5":
+        return Finding("gripper", f"switched by tool output {gripper.output}")
     if not robot.is_real:
         return Finding("gripper", f"simulated Robotiq {gripper.model}")
     assert robot.address is not None and gripper.model is not None, "checked by the validators"

@@ -1,6 +1,7 @@
 """Capacity by imagined filling of scanned objects, against a fill of their true meshes with water.
 
-Usage: python -m tests.benchmarks.capacity [--seed N] [--pick NAME ...] [--packing]
+Usage: python -m tests.benchmarks.capacity [--seed N] [--pick NAME ...] [--real] [--packing]
+`--real` fills with candies however many fit, where usually balls stand for them; that takes minutes.
 `--packing` prints how densely the imagined particles lie in known cylinders and boxes instead, from which the
 numbers in core/imagination/capacity/packing.py come.
 """
@@ -43,6 +44,7 @@ from core.workers import RunHere, Task, WorkerPool
 
 OBJECTS = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "objects"
 FINE_POINTS = 8_000_000
+_MOST_REAL = 5000
 _UNAMBIGUOUS = 0.05
 """Water and candies agree by this on the true mesh: it has neither cracks nor hollow walls that are open."""
 
@@ -57,9 +59,9 @@ class Row:
     seconds: float
 
 
-def measure(one: LabelledObject, seed: int) -> Row:
+def measure(one: LabelledObject, seed: int, changes: dict[str, float]) -> Row:
     """Scan an object, fill it in imagination, and its true mesh with water, in a worker."""
-    parameters = apply_settings(Parameters(), {"seed": seed})
+    parameters = apply_settings(Parameters(), {"seed": seed, **changes})
     mesh = read_mesh(one.mesh, Reporter())
     placed = place_object(mesh, "scan", seed)
     known = known_surface(mesh, placed, "scan", parameters, Reporter())
@@ -73,13 +75,13 @@ def measure(one: LabelledObject, seed: int) -> Row:
     return Row(capacity, true.water_ml, true.candies_ml, seconds)
 
 
-def print_capacities(objects: list[LabelledObject], seed: int) -> None:
+def print_capacities(objects: list[LabelledObject], seed: int, changes: dict[str, float]) -> None:
     """Print a row for each object, and how far those are off whose capacity is beyond doubt."""
     print("| object | candies | spread | ml imagined | ml geometric | ml true | error | ball | CPU s | why |")
     print("|---|---|---|---|---|---|---|---|---|---|", flush=True)
     with WorkerPool() as pool:
         pool.start(WORKER_MODULE)
-        rows = pool.run([Task(measure, (one, seed)) for one in objects], "capacity", Reporter())
+        rows = pool.run([Task(measure, (one, seed, changes)) for one in objects], "capacity", Reporter())
     errors = []
     for one, row in zip(objects, rows, strict=True):
         found: Capacity = row.capacity
@@ -185,13 +187,15 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--pick", nargs="*", default=[])
+    parser.add_argument("--real", action="store_true")
     parser.add_argument("--packing", action="store_true")
     chosen = parser.parse_args()
     if chosen.packing:
         print_packing()
         return
     objects = [one for one in read_labels(OBJECTS) if one.label == "container"]
-    print_capacities([one for one in objects if not chosen.pick or one.name in chosen.pick], chosen.seed)
+    picked = [one for one in objects if not chosen.pick or one.name in chosen.pick]
+    print_capacities(picked, chosen.seed, {"capacity.n_real": _MOST_REAL} if chosen.real else {})
 
 
 if __name__ == "__main__":

@@ -239,9 +239,7 @@ def _views(cell_file: Path) -> Step:
 def _reference(cell_file: Path) -> Step:
     latest = latest_result(cell_file, step_names.REFERENCE)
     if latest is None:
-        return Step(
-            step_names.REFERENCE, StepState.OPEN, "fix the board where it can stay, and store one view of it"
-        )
+        return Step(step_names.REFERENCE, StepState.OPEN, "fix the board where it can stay, and store a view")
     folder, table = latest
     with reading(folder):
         time, hand_eye, n_corners = str(table["time"]), table["hand_eye"], len(table["ids"])
