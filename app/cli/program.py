@@ -49,8 +49,14 @@ def desktop(
             help="Click through the whole program without a screen, from a new session to poured candies.",
         ),
     ] = False,
+    is_version_asked: Annotated[bool, typer.Option("--version", help="Print the program's version.")] = False,
 ) -> None:
     """Can I pour into it? Without a command: the desktop."""
+    if is_version_asked:
+        from importlib.metadata import version
+
+        print(f"Poursight {version('poursight')}")
+        raise typer.Exit
     if headless_check:
         from app.gui.headless_check import check
 

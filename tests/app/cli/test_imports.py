@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib.metadata import version
 
 HEAVY = (
     *("PySide6", "pyqtgraph", "pybullet", "open3d", "trimesh", "matplotlib", "numba", "optuna"),
@@ -25,3 +26,8 @@ def test_without_a_screen_the_desktop_says_so(monkeypatch, poursight):
     assert code == 1
     assert "There is no screen" in err
     assert "poursight demo" in err
+
+
+def test_the_version_is_that_of_the_package(poursight):
+    code, out, _ = poursight("--version")
+    assert (code, out) == (0, f"Poursight {version('poursight')}\n")
