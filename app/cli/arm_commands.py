@@ -25,7 +25,8 @@ from core.session.operator_choice import withdraw_operator_choice
 from core.session.pour_runs import note_emptied
 from hardware.grippers.robotiq_line import ROBOTIQ_PORT
 from hardware.simulation.ur_controller.identity import CONTROL_PORT, identity
-from hardware.simulation.ur_controller.server import ControllerServer, ControllerSettings
+from hardware.simulation.ur_controller.server import ControllerServer
+from hardware.simulation.ur_controller.settings import ControllerSettings
 
 
 def plan(session: Path, cell_file: Path | None, workers: int | None) -> None:

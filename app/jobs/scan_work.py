@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from core.scan.model import RgbdFrame
     from hardware.cell import Arm, Cell, CellSettings
     from hardware.interfaces import ReadyStep, Robot
-    from hardware.scanning.procedure import ScanControl
+    from hardware.scanning.control import ScanControl
     from hardware.scanning.route import ScanRoute
     from hardware.scanning.views import ViewRecord
 
@@ -149,7 +149,7 @@ class ScanWork(Service):
 
     @contextmanager
     def _under_way(self, reporter: JobReporter) -> Iterator[Running]:
-        from hardware.scanning.procedure import ScanControl
+        from hardware.scanning.control import ScanControl
 
         self._is_idle.clear()
         self._running = running = Running(reporter, ScanControl())

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from core.progress import Reporter
     from hardware.cell import Cell
     from hardware.pouring.run_log import RunLog
+    from hardware.scanning.control import ScanControl
     from hardware.scanning.moving import WatchedMoving
-    from hardware.scanning.procedure import ScanControl, ScanProcedure, ViewsPlanned, ViewTaken
+    from hardware.scanning.procedure import ScanProcedure, ViewsPlanned, ViewTaken
     from hardware.scanning.route import ScanRoute
     from hardware.scanning.store import ScanStore
     from hardware.scanning.views import ScanPlan

@@ -16,8 +16,9 @@ from core.scan.model import CropBox, Intrinsics, crop_box
 from hardware.cell import Cell
 from hardware.cell.scene import motion_scene, object_space, view_task, with_crop_box
 from hardware.cell.settings import CellSettings
+from hardware.scanning.control import ScanControl
 from hardware.scanning.moving import Moving
-from hardware.scanning.procedure import ScanControl, ScanProcedure
+from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import PlannedView
 
 N_VIEWS = 3

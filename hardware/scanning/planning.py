@@ -14,8 +14,9 @@ from core.scan.model import CropBox, crop_box
 from hardware.cell import Cell
 from hardware.cell.scene import OBJECT_BOX, motion_scene, plans_views, view_task, with_crop_box
 from hardware.cell.settings import CellSettings
+from hardware.scanning.control import ScanControl
 from hardware.scanning.first_look import FirstLook, MovingIn, first_look_views, look_first
-from hardware.scanning.procedure import FEWEST_VIEWS, ScanControl
+from hardware.scanning.procedure import FEWEST_VIEWS
 from hardware.scanning.views import ScanPlan
 
 N_VIEWS = 24

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from threading import Event
 
 import numpy as np
 
@@ -20,6 +19,7 @@ from core.scan.model import Intrinsics, RgbdFrame, Scan
 from hardware.cell import Cell
 from hardware.errors import CameraError, CameraLost, RobotError
 from hardware.interfaces import CameraImage
+from hardware.scanning.control import ScanControl
 from hardware.scanning.moving import (
     MOVE_TIMEOUT_S,
     POLL_S,
@@ -42,37 +42,6 @@ ViewTaken = Callable[[ViewRecord, RgbdFrame | None, TsdfVolume], None]
 (`.mesh()` to look at)."""
 ViewsPlanned = Callable[[Sequence[ViewRecord], TsdfVolume], None]
 """Called before views are taken: what became of each so far, and everything fused so far."""
-
-
-class ScanControl:
-    """Pauses a scan between two views; safe from any thread."""
-
-    def __init__(self) -> None:
-        self._may_go_on = Event()
-        self._may_go_on.set()
-
-    @property
-    def is_paused(self) -> bool:
-        """Whether the scan waits, or will before its next move."""
-        return not self._may_go_on.is_set()
-
-    def pause(self) -> None:
-        """Let the arm wait after the view it is at."""
-        self._may_go_on.clear()
-
-    def resume(self) -> None:
-        """Go on."""
-        self._may_go_on.set()
-
-    def wait_while_paused(self, reporter: Reporter) -> None:
-        """Return when the scan may go on.
-
-        Raises:
-            Cancelled: on request.
-        """
-        reporter.raise_if_cancelled()
-        while not self._may_go_on.wait(POLL_S):
-            reporter.raise_if_cancelled()
 
 
 class ScanProcedure:

@@ -31,8 +31,8 @@ from hardware.cell.settings import CellSettings
 from hardware.errors import CameraError, CameraLost
 from hardware.interfaces import CameraImage
 from hardware.pouring.run_log import RunLog
+from hardware.scanning.control import ScanControl
 from hardware.scanning.moving import Moving, PlainMoving, WatchedMoving
-from hardware.scanning.procedure import ScanControl
 from hardware.scanning.views import PlannedView
 
 _STILL_RAD = 2e-4

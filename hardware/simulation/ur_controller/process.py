@@ -5,7 +5,6 @@ Never in the client's process: ur_rtde's constructors hold the interpreter while
 
 from __future__ import annotations
 
-import asyncio
 import socket
 from collections.abc import Sequence
 from multiprocessing.connection import Connection
@@ -17,7 +16,7 @@ from core.motion.factory_calibration import MeasuredKinematics
 from hardware.errors import RobotError
 from hardware.realtime import take_precedence
 from hardware.simulation.ur_controller.identity import CONTROL_PORT, HOME_RAD, identity
-from hardware.simulation.ur_controller.server import ControllerServer, ControllerSettings
+from hardware.simulation.ur_controller.settings import ControllerSettings
 
 _START_S = 15.0
 _ANSWER_S = 5.0
@@ -135,6 +134,10 @@ class ControllerProcess:
 
 def _serve(connection: Connection, settings: ControllerSettings) -> None:
     """In the new process: send the address once everything listens, or why nothing does."""
+    import asyncio  # here: the window starts controllers, and is none
+
+    from hardware.simulation.ur_controller.server import ControllerServer
+
     take_precedence()  # a controller is a computer of its own: what else runs here must not slow it down
     try:
         asyncio.run(ControllerServer(settings).run(connection.send))

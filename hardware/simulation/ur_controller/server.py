@@ -4,58 +4,32 @@ from __future__ import annotations
 
 import asyncio
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from ipaddress import ip_address
 
 from core.errors import InputError
-from core.motion.factory_calibration import MeasuredKinematics
 from hardware.grippers.robotiq_line import ROBOTIQ_PORT
 from hardware.simulation.ur_controller.controller import Controller
 from hardware.simulation.ur_controller.faults import FaultInjector, FaultRefused
 from hardware.simulation.ur_controller.identity import (
     CONTROL_PORT,
     DASHBOARD_PORT,
-    HOME_RAD,
     PRIMARY_PORT,
     RTDE_PORT,
     SCRIPT_PORT,
-    Identity,
 )
 from hardware.simulation.ur_controller.link import Network
 from hardware.simulation.ur_controller.primary_server import PrimaryLink
 from hardware.simulation.ur_controller.robotiq import RobotiqHand, RobotiqLink
 from hardware.simulation.ur_controller.rtde_server import Outputs, RtdeLink
+from hardware.simulation.ur_controller.settings import ControllerSettings
 from hardware.simulation.ur_controller.text_servers import ControlLink, DashboardLink, ScriptLink
 
 _ADDRESS_TRIES = 50
 _LATE_S = 0.02
 _STOOD_STILL_S = 0.1
 """Beyond this much wall time the machine itself stood still: that is left out, for the watchdog, too."""
-
-
-@dataclass(frozen=True)
-class ControllerSettings:
-    """What shall be simulated.
-
-    Attributes:
-        identity: model and version.
-        address: on loopback; none: any 127.x.y.z that is free.
-        joints_rad: (6,) where the arm is at first.
-        speed_up: how many times faster than the wall clock the controller's clock runs.
-        faults: lines for the fault injector, taken at the start.
-        robotiq: model of the Robotiq gripper that is served; none: there is none.
-        measured: the arm's own kinematics; none: they are as published.
-    """
-
-    identity: Identity
-    address: str | None = None
-    joints_rad: Sequence[float] = HOME_RAD
-    speed_up: float = 1.0
-    faults: Sequence[str] = ()
-    robotiq: str | None = None
-    measured: MeasuredKinematics | None = None
 
 
 class ControllerServer:

@@ -45,3 +45,9 @@ def test_whatever_the_window_imports_computes_nothing():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_sources_that_were_looked_into_while_pages_were_imported_are_not_kept():
+    program = "import linecache; from app.gui.shell.window import Preload; Preload().run(); print(len(linecache.cache))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "0"

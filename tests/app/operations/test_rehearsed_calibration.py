@@ -22,8 +22,8 @@ from core.motion.arm_models import UR5
 from core.progress import Reporter
 from hardware.cell import read_cell
 from hardware.cell.own_arm import measured_in_simulation
+from hardware.scanning.control import ScanControl
 from hardware.scanning.moving import CONFIRMED
-from hardware.scanning.procedure import ScanControl
 from hardware.simulation.ur_controller.process import ControllerProcess
 
 pytestmark = [pytest.mark.system, pytest.mark.punctual]

@@ -13,7 +13,8 @@ from core.progress import Reporter
 from hardware.cell import Cell, CellSettings, open_cell, read_cell
 from hardware.errors import CameraError, CameraLost
 from hardware.interfaces import Camera, CameraImage, Move, Robot, RobotState
-from hardware.scanning.procedure import ScanControl, ScanProcedure, ViewTaken
+from hardware.scanning.control import ScanControl
+from hardware.scanning.procedure import ScanProcedure, ViewTaken
 from hardware.scanning.store import ScanStore
 from hardware.scanning.views import PlannedView, name_views
 from hardware.simulation.world import World

@@ -20,7 +20,8 @@ from core.scan import read_scan
 from core.scan.model import RgbdFrame
 from hardware.cell import Cell, open_cell
 from hardware.errors import RobotStopped
-from hardware.scanning.procedure import ScanControl, ScanProcedure
+from hardware.scanning.control import ScanControl
+from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.store import ScanStore, read_views
 from hardware.scanning.views import ViewRecord, ViewState
 from hardware.simulation.world import World

@@ -1,10 +1,11 @@
 import numpy as np
 import pytest
+from scipy.special import betaincinv
 
 from core.geometry import make_pose, rotation_z
 from core.imagination.packing import cup_holds
 from core.imagination.risk.drawing import draw_cups, draw_set_up, with_camera_error, with_scan_error
-from core.imagination.risk.result import PourRisk
+from core.imagination.risk.result import PourRisk, lower_bound
 from core.imagination.set_up import as_planned
 from core.parameters import Parameters, apply_settings
 from core.pipeline.in_memory import imagine
@@ -166,3 +167,9 @@ def test_where_no_pour_is_sure_enough_fewer_candies_are_tried(doubtful, tmp_path
 
 def test_where_a_pour_is_sure_enough_no_other_amount_is_tried(dish_tried):
     assert dish_tried.risk.clean_at_least.max() < 0.6 or dish_tried.risk.fewer is None
+
+
+def test_the_lower_bound_is_the_quantile_of_the_beta_distribution():
+    n_clean, n_tries = np.array([0, 0, 1, 13, 24, 12, 4990]), np.array([0, 5, 1, 13, 24, 24, 5000])
+    wanted = betaincinv(n_clean + 1, n_tries - n_clean + 1, 0.05)
+    np.testing.assert_allclose(lower_bound(n_clean, n_tries), wanted, rtol=1e-12)
