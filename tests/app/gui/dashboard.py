@@ -26,7 +26,8 @@ class Dashboard:
         threading.Thread(target=self._serve, daemon=True).start()
 
     def close(self) -> None:
-        """Accept nobody any more."""
+        """Accept nobody any more; a thread that waits for somebody would keep the port."""
+        self._server.shutdown(socket.SHUT_RDWR)
         self._server.close()
 
     def _serve(self) -> None:
