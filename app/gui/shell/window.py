@@ -52,7 +52,6 @@ class Preload(QThread):
 
     @override
     def run(self) -> None:
-        linecache.clearcache()
         import_module(_OPENGL)
         for key in (*WORK, *OTHERS):
             linecache.clearcache()

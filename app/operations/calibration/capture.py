@@ -152,9 +152,8 @@ class Capture:
             import cv2  # late: it costs the window memory
 
             png = cv2.imencode(".png", cv2.cvtColor(image.color, cv2.COLOR_RGB2BGR))[1].tobytes()
-            image = replace(
-                image, color=self.lens.as_pinhole(image.color)
-            )  # where corners are where they are said
+            # Whoever follows draws the corners into it, which are where a pinhole sees them.
+            image = replace(image, color=self.lens.as_pinhole(image.color))
         write_looks(self.folder, self.facts, self.collection.looks, png)
         self.observer.taken(look, len(self.collection.views), image)
         return look
@@ -285,6 +284,7 @@ def find_board(capture: Capture) -> None:
             f"{look.problem} Guide the arm by hand to where the camera sees the whole board, and begin again."
         )
     for joints in settings.scan.views_rad:
+        capture.observer.control.wait_while_paused(capture.reporter)
         try:
             capture.moving.go(PlannedView("towards the board", joints))
         except MotionError:

@@ -46,7 +46,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         self._of: Path | None = None
         self._looks: list[BoardSought] = []
         self._planned: FloatArray = np.empty((0, 4, 4))
-        self._question, self._can_pause, self._is_paused = "", False, False
+        self._question, self._is_paused = "", False
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(SplitView(self.view, self.side))
@@ -145,7 +145,6 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         if isinstance(news, ScanQuestion):
             self._question = news.sentence
         elif isinstance(news, LooksPlanned):
-            self._can_pause = True
             self._planned = news.T_base_camera
             self._show_looks()
         elif isinstance(news, CameraSeen):
@@ -179,7 +178,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         """A job has ended: what it did is in the files."""
         if page == self.KEY:
             self._picked = step_names.CAMERA if self._work.is_live else ""
-            self._question, self._can_pause, self._is_paused = "", False, False
+            self._question, self._is_paused = "", False
             self.view.end_live()
             self._work.read_again()
 
@@ -218,7 +217,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
     def _do(self, *, is_restarted: bool = False) -> None:
         step = self.step
         self._looks, self._planned = [], np.empty((0, 4, 4))
-        self._question, self._can_pause, self._is_paused = "", False, False
+        self._question, self._is_paused = "", False
         try:
             words = step_words(step, self.desk.cell.is_simulated)
             self._work.do(step, words.title, self.side.options, is_restarted=is_restarted)
@@ -254,7 +253,6 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
             is_idle=desk.jobs.is_idle,
             is_simulated=desk.cell.is_simulated,
             is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
-            can_pause=self._can_pause,
             is_paused=self._is_paused,
             question=self._question,
             looks=tuple(self._looks),
@@ -277,7 +275,7 @@ class CellPage(BackgroundPage[CellKey, CellContents]):
         side.primary.setText(now.primary_text)
         can_begin = now.is_idle and not obstacle and now.contents is not None
         is_complete = side.form.is_complete if now.is_new else True
-        is_asked = now.is_running and (bool(now.question) or now.can_pause)
+        is_asked = now.can_pause or (now.is_running and bool(now.question))
         self.offer(side.primary, is_asked or not now.is_running, is_asked or (can_begin and is_complete))
         self.offer(side.undo, now.can_undo and not now.is_running, now.is_idle)
         self.offer(side.live, now.step == step_names.CAMERA and not now.is_running, can_begin)

@@ -40,7 +40,6 @@ class Situation:
         is_idle: whether no job is running.
         is_simulated: whether nothing real moves.
         is_arm_taken: whether the process that pours holds the real arm.
-        can_pause: whether the step under way goes from view to view by now.
         is_paused: whether it was asked to wait.
         question: what the step under way waits for; empty if it does not.
         looks: at the board, of the step under way or the last one.
@@ -57,7 +56,6 @@ class Situation:
     is_idle: bool
     is_simulated: bool
     is_arm_taken: bool
-    can_pause: bool
     is_paused: bool
     question: str
     looks: tuple[BoardSought, ...]
@@ -67,6 +65,11 @@ class Situation:
     def chosen(self) -> Step | None:
         """The chosen step."""
         return next((step for step in self.steps if step.name == self.step), None)
+
+    @property
+    def can_pause(self) -> bool:
+        """Whether the step under way goes from view to view."""
+        return self.is_running and bool(self.looks)
 
     @property
     def can_undo(self) -> bool:
