@@ -30,8 +30,9 @@ _CONNECT_S = 5
 _POLL_S = 0.05
 _COUNT_EVERY_S = 1.0
 _WARN_AFTER_S = 10.0
-_LOST_S, _REPLENISH_S = 5, 1.0
-"""Time that a worker has to come back, and between two looks whether one is missing."""
+_REPLENISH_S = 1.0
+_START_S = 60
+"""Longer than a worker takes to start on a busy machine: one that takes longer hangs."""
 _LARGEST_MESH = "1GB"
 """Dask warns of what is larger than this."""
 _ALONE = threading.Lock()
@@ -323,14 +324,22 @@ def _first_line(error: BaseException) -> str:
 
 @contextmanager
 def _replenished(cluster: LocalCluster, n_workers: int) -> Iterator[None]:
-    """Start a worker anew that is gone for good: Dask gives one up whose start fails after it had died."""
+    """Start workers anew that are gone for good: Dask keeps the place of one whose start failed or hung."""
+    from distributed.core import Status
+
     is_over = threading.Event()
 
     def replenish() -> None:
-        while not is_over.wait(_REPLENISH_S):
-            cluster.scale(n_workers)
+        for name, nanny in list(cluster.workers.items()):
+            if nanny.status in (Status.failed, Status.closed):
+                del cluster.workers[name]
+        cluster.scale(n_workers)
 
-    thread = threading.Thread(target=replenish, daemon=True)
+    def watch() -> None:
+        while not is_over.wait(_REPLENISH_S):
+            cluster.loop.add_callback(replenish)
+
+    thread = threading.Thread(target=watch, daemon=True)
     thread.start()
     try:
         yield
@@ -347,7 +356,7 @@ def _started(n_workers: int, port: int) -> LocalCluster:
         {
             "distributed.nanny.pre-spawn-environ": THREADS,
             "distributed.scheduler.allowed-failures": MAX_DEATHS - 1,
-            "distributed.deploy.lost-worker-timeout": f"{_LOST_S}s",
+            "distributed.deploy.lost-worker-timeout": f"{_START_S}s",
         }
     )
     try:
@@ -360,6 +369,7 @@ def _started(n_workers: int, port: int) -> LocalCluster:
             dashboard_address="127.0.0.1:0",
             scheduler_kwargs={"dashboard": False},
             memory_limit=0,
+            death_timeout=_START_S,
             silence_logs=logging.CRITICAL,
         )
     except (OSError, RuntimeError) as error:

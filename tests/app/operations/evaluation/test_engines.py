@@ -5,6 +5,7 @@ import os
 import signal
 import threading
 import time
+from contextlib import suppress
 
 import psutil
 import pytest
@@ -160,12 +161,43 @@ def test_a_worker_may_join_later(tmp_path, monkeypatch):
     assert "--nthreads 1" in reporter.said[0]
 
 
+def registered():
+    """Return the scheduler's worker processes; an address may be given out again, this may not."""
+    return lambda dask_scheduler: {state.server_id for state in dask_scheduler.workers.values()}
+
+
 def test_workers_that_are_given_up_are_started_anew(tmp_path):
     with running_cluster(2) as (_, address):
         with Client(address) as client:
-            gone = set(client.retire_workers())
-            wait_until(lambda: len(set(client.scheduler_info()["workers"]) - gone) == 2)
+            gone = client.run_on_scheduler(registered())
+            client.retire_workers(list(client.scheduler_info()["workers"]))
+            wait_until(lambda: len(client.run_on_scheduler(registered()) - gone) == 2)
         assert set(finished(DaskEngine(address, fake_trial), [fake_task(tmp_path, "a")])) == {"a"}
+
+
+@pytest.mark.parametrize("fault", [signal.SIGKILL, signal.SIGSTOP])
+def test_a_worker_whose_start_fails_or_hangs_is_started_anew(fault, monkeypatch):
+    monkeypatch.setattr(dask_engine, "_START_S", 10)
+    with dask_engine.local_cluster(2, 0) as (address, _), Client(address) as client:
+        old = worker_processes()
+        client.retire_workers(list(client.scheduler_info()["workers"]))
+        wait_until(lambda: worker_processes() - old)
+        starting = min(worker_processes() - old)
+        os.kill(starting, fault)
+        wait_until(lambda: len(client.scheduler_info()["workers"]) == 2)
+        assert starting not in client.run(os.getpid).values()
+        with suppress(ProcessLookupError):  # what is stopped does not hear that it shall end
+            os.kill(starting, signal.SIGKILL)
+
+
+def worker_processes():
+    """Return the ids of this process's Dask workers, those included that are only starting."""
+    found = set()
+    for process in psutil.Process().children(recursive=True):
+        with suppress(psutil.Error):
+            if "spawn_main" in " ".join(process.cmdline()):
+                found.add(process.pid)
+    return found
 
 
 def test_a_scheduler_that_goes_is_a_sentence_and_takes_its_workers_along(tmp_path):
