@@ -80,7 +80,7 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         capacity.n_candies,
         float(capacity.bulk_ml),
         capacity.n_level,
-        capacity.volume_ml,
+        capacity.level_ml,
         capacity.stand_in_diameter_m is not None,
         least_ml=capacity.least_ml,
         most_ml=capacity.most_ml,

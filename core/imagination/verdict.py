@@ -19,7 +19,7 @@ class Verdict:
         n_candies: the same in candies.
         volume_ml: the same in ml.
         level_candies: of `n_candies`, those below the rim; none in records of earlier versions.
-        level_ml: what they take up in bulk, the volume of water that stands as high; none likewise.
+        level_ml: water that the true object holds as high, as near as can be told; none likewise.
         has_stand_ins: whether larger balls were filled in place of candies: what they heap is no heap of
             candies.
         unseen_ml: volume behind its openings that no view saw; zero if that could not matter.

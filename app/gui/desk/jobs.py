@@ -43,6 +43,7 @@ class RunningJob:
         steps: of the job; none if they are not known.
         counted: how many of how many units of that stage are done.
         is_endless: whether it goes on until it is cancelled.
+        paused_s: when it was asked to wait; none while it goes on.
     """
 
     title: str
@@ -58,19 +59,32 @@ class RunningJob:
     steps: JobSteps | None = None
     counted: tuple[int, int] | None = None
     is_endless: bool = False
+    paused_s: float | None = None
 
     @property
     def seconds_left(self) -> float | None:
         """Of the whole job if its steps are known, else of the stage that runs, by its speed so far.
 
-        None while too little is done to estimate it.
+        None while too little is done to estimate it, and while it waits.
         """
+        if self.paused_s is not None:
+            return None
         if self.steps is not None:
             return self.steps.seconds_left
         spent_s = time.monotonic() - self.stage_began_s
         if self.fraction <= 0.02 or spent_s < _SOONEST_GUESS_S:
             return None
         return spent_s * (1 - self.fraction) / self.fraction
+
+    def pause(self) -> None:
+        """Note that it waits from now on."""
+        self.paused_s = time.monotonic()
+
+    def resume(self) -> None:
+        """Note that it goes on; the time that it waited says nothing about its speed."""
+        if self.paused_s is not None:
+            self.stage_began_s += time.monotonic() - self.paused_s
+            self.paused_s = None
 
     def progress(self, message: Progressed) -> None:
         """Update stage and fraction."""
@@ -187,6 +201,20 @@ class Jobs(QObject):
         job.host.cancel()
         self._enforce.start(round(1000 * job.patience_s))
         self.progressed.emit(job)
+
+    def pause(self, host: Host[Any], order: Callable[[Any], None]) -> None:
+        """Let the host's job wait; `order` tells it."""
+        host.order(order)
+        if self.running is not None:
+            self.running.pause()
+            self.progressed.emit(self.running)
+
+    def resume(self, host: Host[Any], order: Callable[[Any], None]) -> None:
+        """Let it go on; also where it waits for an answer."""
+        host.order(order)
+        if self.running is not None:
+            self.running.resume()
+            self.progressed.emit(self.running)
 
     def close(self) -> None:
         """End all processes; no signal is sent any more."""

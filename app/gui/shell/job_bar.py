@@ -125,6 +125,8 @@ class JobBar(QFrame):
         share = self.tr("{percent} %").format(percent=round(100 * job.fraction)) if job.stage else ""
         if job.is_cancelling:
             return share
+        if job.paused_s is not None:
+            return ", ".join(filter(None, (share, self.tr("paused"))))
         if job.seconds_left is None:
             is_late = job.steps is not None and job.steps.is_late
             return self.tr("{share}, takes longer than expected").format(share=share) if is_late else share

@@ -14,6 +14,8 @@ from core.imagination.recording import Recording
 
 CAPACITY_FILE = "capacity.json"
 _ARRAYS = "capacity.npz"
+_OUTWARDS = 0.6
+"""A scan's hollows are too small: by so much of what separates them from their least volume (decision 0042)."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,12 @@ class Capacity:
     def n_level(self) -> float:
         """Of `n_candies`, those below the rim: what fits without a heap."""
         return self.volume_ml * self.candies_per_ml
+
+    @property
+    def level_ml(self) -> float:
+        """The true object's level volume, as near as can be told: `volume_ml`, and what scans usually lose."""
+        lost_ml = 0.0 if self.least_ml is None else _OUTWARDS * (self.volume_ml - self.least_ml)
+        return self.volume_ml + lost_ml
 
     @property
     def bulk_ml(self) -> float:

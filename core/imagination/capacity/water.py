@@ -23,8 +23,9 @@ _FINEST_M = 0.0005
 _MOUTH_LAYERS = 12
 _NEAR = 1.5
 """Water within so many half thicknesses of a candy's centre is where candies are."""
-_BESIDE = 1.3
-"""So far, likewise, where it is not known to hold water: more would run out of a basket's openings."""
+_BESIDE, _BESIDE_PITCHES = 1.3, 1.5
+"""So far, likewise, where it is not known to hold water, or so many pitches beyond a ball, whichever is more: a
+coarse lattice leaves so much beside a wall. More would run out of a basket's openings."""
 
 
 def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
@@ -96,10 +97,11 @@ def _beside(
     in the uppermost layers, where points are joined over the rim.
     """
     pitch = lattice.pitch_m.tolist()
-    within = (away < _BESIDE * radius_m) & (lattice.heights_m < rims_m - 2 * pitch[2])
+    reach_m = max((_BESIDE - 1) * radius_m, _BESIDE_PITCHES * pitch[0])
+    within = (away < radius_m + reach_m) & (lattice.heights_m < rims_m - 2 * pitch[2])
     held: BoolArray = touched & within
     layers = round(1 / FLATNESS)
-    for axis in (0, 1, *(2,) * layers) * ceil((_BESIDE - 1) * radius_m / pitch[0]):
+    for axis in (0, 1, *(2,) * layers) * ceil(reach_m / pitch[0]):
         joined = ~np.moveaxis(lattice.parted[axis], axis, 0)[:-1]
         line, room = np.moveaxis(held, axis, 0), np.moveaxis(within, axis, 0)
         up, down = line[:-1] & joined & room[1:], line[1:] & joined & room[:-1]

@@ -9,7 +9,8 @@ import time
 import psutil
 import pytest
 
-from app.gui.desk.jobs import Inbox, Jobs
+from app.gui.desk import jobs as jobs_module
+from app.gui.desk.jobs import Inbox, Jobs, RunningJob
 from app.jobs.arm_events import ArmStatus
 from app.jobs.host import Host
 from app.jobs.messages import Event, FailureKind, Finished, Progressed, Warned
@@ -58,6 +59,22 @@ def test_a_job_reports_how_far_it_is_and_how_long_it_takes(jobs, host, qtbot):
     assert fractions == sorted(fractions)
     assert any(left is not None and 0 <= left < 3 for _, _, left in seen)
     assert jobs.is_idle
+
+
+def test_time_that_a_job_waits_says_nothing_about_its_pace(monkeypatch):
+    now_s = 100.0
+    monkeypatch.setattr(jobs_module.time, "monotonic", lambda: now_s)
+    job = RunningJob("Scan", "scan", "", None, None)
+    job.progress(Progressed("views", 0, 24))
+    now_s = 112.0
+    job.progress(Progressed("views", 6, 24))
+    assert job.seconds_left == pytest.approx(36)
+    job.pause()
+    now_s = 712.0
+    assert job.seconds_left is None
+    job.resume()
+    job.resume()  # also an answer to a question resumes
+    assert job.seconds_left == pytest.approx(36)
 
 
 def test_a_second_job_is_not_begun_beside_the_first(jobs, host, qtbot):

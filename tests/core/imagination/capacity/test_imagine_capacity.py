@@ -45,6 +45,7 @@ def test_a_dish_holds_its_inside(filled):
 
 def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, filled, candies, few):
     assert filled.least_ml is None and filled.between == ""
+    assert filled.level_ml == filled.volume_ml
     error_m = 0.001
     scanned = fill(replace(exact_dish, surface_error_m=error_m), candies, few, RunHere())
     assert scanned.volume_ml == filled.volume_ml
@@ -52,6 +53,8 @@ def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, fill
     more_ml = 92 * 52 * 37 / 1000 - 90 * 50 * 35 / 1000
     assert scanned.most_ml - scanned.volume_ml == pytest.approx(more_ml, rel=0.2)
     assert scanned.volume_ml - scanned.least_ml == pytest.approx(more_ml / 3, rel=0.2)
+    assert scanned.volume_ml < scanned.level_ml < scanned.most_ml
+    assert scanned.level_ml - scanned.volume_ml == pytest.approx(more_ml / 5, rel=0.2)
     assert scanned.between in scanned.remark
     unseen = UnseenReadings(40.0, exact_dish.surface)
     hidden = fill(replace(exact_dish, surface_error_m=error_m, unseen=unseen), candies, few, RunHere())

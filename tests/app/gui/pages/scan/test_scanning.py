@@ -43,6 +43,7 @@ def test_a_scan_is_watched_killed_and_tried_again(qtbot, desk, small_cell_page, 
     assert not page.side._image._image.isNull()
     qtbot.mouseClick(primary(page), Qt.MouseButton.LeftButton)
     assert headline(page).startswith("Paused")
+    assert desk.jobs.running.seconds_left is None
     assert primary(page).text() == "Resume"
     qtbot.wait(1500)
     held = n_taken(page)
