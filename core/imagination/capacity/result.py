@@ -15,7 +15,7 @@ from core.imagination.recording import Recording
 CAPACITY_FILE = "capacity.json"
 _ARRAYS = "capacity.npz"
 _OUTWARDS = 0.6
-"""A scan's hollows are too small: by so much of what separates them from their least volume (decision 0042)."""
+"""A scan's hollows are too small: by so much of what parts them from the least volume (0042)."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Capacity:
 
     @property
     def level_ml(self) -> float:
-        """The true object's level volume, as near as can be told: `volume_ml`, and what scans usually lose."""
+        """The true object's level volume, as near as can be told: what scans usually lose is added."""
         lost_ml = 0.0 if self.least_ml is None else _OUTWARDS * (self.volume_ml - self.least_ml)
         return self.volume_ml + lost_ml
 

@@ -24,8 +24,8 @@ _MOUTH_LAYERS = 12
 _NEAR = 1.5
 """Water within so many half thicknesses of a candy's centre is where candies are."""
 _BESIDE, _BESIDE_PITCHES = 1.3, 1.5
-"""So far, likewise, where it is not known to hold water, or so many pitches beyond a ball, whichever is more: a
-coarse lattice leaves so much beside a wall. More would run out of a basket's openings."""
+"""So far, likewise, where it is not known to hold water, or so many pitches beyond a ball: a coarse lattice
+leaves so much beside a wall. More would run out of a basket's openings."""
 
 
 def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
