@@ -9,7 +9,7 @@ numbers in core/imagination/capacity/packing.py come.
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from time import process_time
 
@@ -40,6 +40,7 @@ from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
 from core.parameters.imagination import CapacityParameters
 from core.progress import Reporter
+from core.reconstruction.result import Reconstruction
 from core.workers import RunHere, Task, WorkerPool
 
 OBJECTS = Path(__file__).resolve().parents[2].parent / "shared" / "data" / "objects"
@@ -65,7 +66,9 @@ def measure(one: LabelledObject, seed: int, changes: dict[str, float]) -> Row:
     mesh = read_mesh(one.mesh, Reporter())
     placed = place_object(mesh, "scan", seed)
     known = known_surface(mesh, placed, "scan", parameters, Reporter())
+    assert isinstance(known, Reconstruction)
     model = build_collision_model(known.mesh, parameters.collision, Reporter())
+    model = replace(model, surface_error_m=known.surface_error_m)
     context = ImaginationContext(parameters, RunHere(), Reporter())
     drop = imagine_drop(context, model)
     began_s = process_time()
@@ -77,8 +80,8 @@ def measure(one: LabelledObject, seed: int, changes: dict[str, float]) -> Row:
 
 def print_capacities(objects: list[LabelledObject], seed: int, changes: dict[str, float]) -> None:
     """Print a row for each object, and how far those are off whose capacity is beyond doubt."""
-    print("| object | candies | spread | ml imagined | ml geometric | ml true | error | ball | CPU s | why |")
-    print("|---|---|---|---|---|---|---|---|---|---|", flush=True)
+    names = "object|candies|spread|ml imagined|ml told|ml geometric|ml true|error|ball|CPU s|why".split("|")
+    print(f"| {' | '.join(names)} |\n|{'---|' * len(names)}", flush=True)
     with WorkerPool() as pool:
         pool.start(WORKER_MODULE)
         rows = pool.run([Task(measure, (one, seed, changes)) for one in objects], "capacity", Reporter())
@@ -86,13 +89,14 @@ def print_capacities(objects: list[LabelledObject], seed: int, changes: dict[str
     for one, row in zip(objects, rows, strict=True):
         found: Capacity = row.capacity
         is_sure = abs(row.true_hollow_ml - row.true_ml) < _UNAMBIGUOUS * row.true_ml
-        error = found.volume_ml / row.true_ml - 1 if is_sure else float("nan")
+        error = found.level_ml / row.true_ml - 1 if is_sure else float("nan")
         errors += [abs(error)] if is_sure else []
         cells = [
             one.name,
             f"{found.n_candies:.0f}",
             f"{found.spread:.0f}",
             f"{found.volume_ml:.0f}",
+            f"{found.level_ml:.0f}",
             f"{found.geometric_volume_ml:.0f}",
             f"{row.true_ml:.0f}",
             f"{100 * error:+.1f} %" if is_sure else f"({row.true_hollow_ml:.0f} closed)",
