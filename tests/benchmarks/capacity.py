@@ -80,7 +80,19 @@ def measure(one: LabelledObject, seed: int, changes: dict[str, float]) -> Row:
 
 def print_capacities(objects: list[LabelledObject], seed: int, changes: dict[str, float]) -> None:
     """Print a row for each object, and how far those are off whose capacity is beyond doubt."""
-    names = "object|candies|spread|ml imagined|ml told|ml geometric|ml true|error|ball|CPU s|why".split("|")
+    names = [
+        "object",
+        "candies",
+        "spread",
+        "ml imagined",
+        "ml told",
+        "ml geometric",
+        "ml true",
+        "error",
+        "ball",
+        "CPU s",
+        "why",
+    ]
     print(f"| {' | '.join(names)} |\n|{'---|' * len(names)}", flush=True)
     with WorkerPool() as pool:
         pool.start(WORKER_MODULE)
