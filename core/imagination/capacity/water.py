@@ -23,9 +23,9 @@ _FINEST_M = 0.0005
 _MOUTH_LAYERS = 12
 _NEAR = 1.5
 """Water within so many half thicknesses of a candy's centre is where candies are."""
-_BESIDE, _BESIDE_PITCHES = 1.3, 1.5
-"""So far, likewise, where it is not known to hold water, or so many pitches beyond a ball: a coarse lattice
-leaves so much beside a wall. More would run out of a basket's openings."""
+_BESIDE, _BESIDE_PITCHES = 1.3, 1.2
+"""So far, likewise, where it is not known to hold water; and so many pitches beyond a ball if a wall is next,
+for a coarse lattice leaves so much beside it. More would run out of a basket's openings."""
 
 
 def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
@@ -97,14 +97,17 @@ def _beside(
     in the uppermost layers, where points are joined over the rim.
     """
     pitch = lattice.pitch_m.tolist()
-    reach_m = max((_BESIDE - 1) * radius_m, _BESIDE_PITCHES * pitch[0])
-    within = (away < radius_m + reach_m) & (lattice.heights_m < rims_m - 2 * pitch[2])
+    below_rim = lattice.heights_m < rims_m - 2 * pitch[2]
+    within = (away < _BESIDE * radius_m) & below_rim
+    at_wall = (away < radius_m + _BESIDE_PITCHES * pitch[0]) & below_rim
     held: BoolArray = touched & within
     layers = round(1 / FLATNESS)
-    for axis in (0, 1, *(2,) * layers) * ceil(reach_m / pitch[0]):
-        joined = ~np.moveaxis(lattice.parted[axis], axis, 0)[:-1]
-        line, room = np.moveaxis(held, axis, 0), np.moveaxis(within, axis, 0)
-        up, down = line[:-1] & joined & room[1:], line[1:] & joined & room[:-1]
+    for axis in (0, 1, *(2,) * layers) * ceil((_BESIDE - 1) * radius_m / pitch[0]):
+        parted = np.moveaxis(lattice.parted[axis], axis, 0)
+        line, room, wall = (np.moveaxis(one, axis, 0) for one in (held, within, at_wall))
+        up = line[:-1] & ~parted[:-1] & (room[1:] | wall[1:] & parted[1:])
+        down = line[1:] & ~parted[:-1] & room[:-1]
+        down[1:] |= line[2:] & ~parted[1:-1] & wall[1:-1] & parted[:-2]
         line[1:] |= up
         line[:-1] |= down
     return held
