@@ -202,17 +202,17 @@ class Jobs(QObject):
         self._enforce.start(round(1000 * job.patience_s))
         self.progressed.emit(job)
 
-    def pause(self, host: Host[Any], order: Callable[[Any], None]) -> None:
-        """Let the host's job wait; `order` tells it."""
-        host.order(order)
+    def pause(self, order: Callable[[Any], None]) -> None:
+        """Let the job wait; `order`, of its host's service, tells it."""
         if self.running is not None:
+            self.running.host.order(order)
             self.running.pause()
             self.progressed.emit(self.running)
 
-    def resume(self, host: Host[Any], order: Callable[[Any], None]) -> None:
-        """Let it go on; also where it waits for an answer."""
-        host.order(order)
+    def resume(self, order: Callable[[Any], None]) -> None:
+        """Let the job go on; also where it waits for an answer."""
         if self.running is not None:
+            self.running.host.order(order)
             self.running.resume()
             self.progressed.emit(self.running)
 

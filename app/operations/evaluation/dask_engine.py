@@ -32,7 +32,7 @@ _COUNT_EVERY_S = 1.0
 _WARN_AFTER_S = 10.0
 _REPLENISH_S = 1.0
 _START_S = 60
-"""Longer than a worker takes to start on a busy machine: one that takes longer hangs."""
+"""Longer than a worker takes to start on a busy machine: one that takes longer, or is away as long, hangs."""
 _LARGEST_MESH = "1GB"
 """Dask warns of what is larger than this."""
 _ALONE = threading.Lock()

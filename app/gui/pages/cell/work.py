@@ -124,11 +124,11 @@ class CellJobs:
 
     def pause(self) -> None:
         """Let the arm rest after the current view."""
-        self._desk.jobs.pause(self._desk.scan_host, CellWork.pause)
+        self._desk.jobs.pause(CellWork.pause)
 
     def resume(self) -> None:
         """Go on; where a job asks, that says yes."""
-        self._desk.jobs.resume(self._desk.scan_host, CellWork.resume)
+        self._desk.jobs.resume(CellWork.resume)
 
     def read_again(self) -> None:
         """Read the cell's file, which a step may have changed."""

@@ -128,11 +128,11 @@ class ScanJobs(QObject):
 
     def pause(self) -> None:
         """Stop the arm after the current view."""
-        self._desk.jobs.pause(self._desk.scan_host, ScanWork.pause)
+        self._desk.jobs.pause(ScanWork.pause)
 
     def resume(self) -> None:
         """Go on."""
-        self._desk.jobs.resume(self._desk.scan_host, ScanWork.resume)
+        self._desk.jobs.resume(ScanWork.resume)
 
     @property
     def _is_open(self) -> bool:

@@ -162,7 +162,7 @@ def test_a_worker_may_join_later(tmp_path, monkeypatch):
 
 
 def registered():
-    """Return the scheduler's worker processes; an address may be given out again, this may not."""
+    """Return what finds a scheduler's workers, to be sent there: an address may come twice, an id may not."""
     return lambda dask_scheduler: {state.server_id for state in dask_scheduler.workers.values()}
 
 
@@ -184,10 +184,12 @@ def test_a_worker_whose_start_fails_or_hangs_is_started_anew(fault, monkeypatch)
         wait_until(lambda: worker_processes() - old)
         starting = min(worker_processes() - old)
         os.kill(starting, fault)
-        wait_until(lambda: len(client.scheduler_info()["workers"]) == 2)
-        assert starting not in client.run(os.getpid).values()
-        with suppress(ProcessLookupError):  # what is stopped does not hear that it shall end
-            os.kill(starting, signal.SIGKILL)
+        try:
+            wait_until(lambda: len(client.scheduler_info()["workers"]) == 2)
+            assert starting not in client.run(os.getpid).values()
+        finally:
+            with suppress(ProcessLookupError):  # what is stopped does not hear that it shall end
+                os.kill(starting, signal.SIGKILL)
 
 
 def worker_processes():
