@@ -251,11 +251,14 @@ class _Worker:
         try:
             raise_if(self._lost_object())
             self._watch_outputs()
-            is_done = motion.step(self._latest)
+            raw = self._latest
+            is_done = motion.step(raw)
             if motion.is_streaming:
                 self._kicked_s = time.monotonic()
             if not is_done:
                 return
+            # From this state on: the arm may be pushed before the next one is read.
+            self._note_rest(raw)
         except RobotError as wrong:
             error = wrong
         except RuntimeError as failed:
@@ -276,14 +279,17 @@ class _Worker:
 
         The thread that reads watches: the other one may wait for a program that another one has replaced.
         """
-        if self._rest_rad is None and np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S:
-            self._rest_rad = raw["joints_rad"]
+        self._note_rest(raw)
         error = deviation(raw)
         if error is None and self._rest_rad is not None:
             error = moved_at_rest(raw["joints_rad"], self._rest_rad)
         if error is not None:
             self._is_over = True
             Thread(target=self._report_rest, args=(error,), daemon=True).start()
+
+    def _note_rest(self, raw: AnyArray) -> None:
+        if self._rest_rad is None and np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S:
+            self._rest_rad = raw["joints_rad"]
 
     def _report_rest(self, error: RobotError) -> None:
         self._send(Ended(self._reason(error), 0.0))

@@ -46,6 +46,17 @@ def test_an_arm_at_rest_that_another_program_moves_is_stopped(bench: Bench, faul
     bench.works_again()
 
 
+@pytest.mark.parametrize("way", ["joint move", "path"])
+def test_an_arm_that_is_pushed_at_the_moment_it_arrives_is_stopped(bench: Bench, way: str) -> None:
+    robot, here = bench.robot, bench.joints()
+    move = robot.move_joints([here, here - 0.05], 1.0, 4.0) if way == "joint move" else None
+    (move or robot.follow(long_way(here))).wait(HANG_S)
+    bench.controller.command("jump 1 0.03")
+    wait_until(lambda: robot.stopped_by() is not None)
+    assert isinstance(robot.stopped_by(), TrackingLost)
+    bench.works_again()
+
+
 def test_a_program_that_ends_while_the_arm_rests_is_not_taken_for_ours(bench: Bench) -> None:
     bench.controller.command("foreign gap still")
     wait_until(lambda: bench.robot.stopped_by() is not None)
