@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,6 @@ from core.collision import CollisionModel
 from core.imagination.body import BodyFile, write_body
 from core.imagination.cup import cup_parts
 from core.imagination.object_at_rest import ObjectAtRest
-from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.parameters.bodies import CupParameters
@@ -48,19 +47,19 @@ class BodyFiles:
         return self._folder.path / f"{name}.obj"
 
 
-class DropsAhead:
-    """Drops that idle processors made before anybody asked for them."""
+class Ahead:
+    """What idle processors found out about surfaces before anybody asked."""
 
     def __init__(self) -> None:
-        self._made: list[tuple[TriangleMesh, Parameters, Drop]] = []
+        self._made: list[tuple[TriangleMesh, Hashable | Parameters, Any]] = []
 
-    def keep(self, surface: TriangleMesh, parameters: Parameters, drop: Drop) -> None:
-        """Keep a drop on a surface."""
-        self._made.append((surface, parameters, drop))
+    def keep(self, surface: TriangleMesh, asked: Hashable | Parameters, result: Any) -> None:
+        """Keep a result; `asked` tells what of the surface, and with which settings."""
+        self._made.append((surface, asked, result))
 
-    def of(self, surface: TriangleMesh, parameters: Parameters) -> Drop | None:
-        """Return the drop on that very surface with these parameters; none if there was none."""
-        made = (drop for one, known, drop in self._made if one is surface and known == parameters)
+    def of(self, surface: TriangleMesh, asked: Hashable | Parameters) -> Any:
+        """Return what was found of that very surface; none if nothing was."""
+        made = (result for one, known, result in self._made if one is surface and known == asked)
         return next(made, None)
 
 
@@ -78,7 +77,7 @@ class ImaginationContext:
         reporter: receives the progress.
         bodies: shared by all imaginations of a run.
         spare: fills processors that the next tasks leave idle; emptied by them.
-        drops_ahead: drops on other readings of the scan, made by spare tasks.
+        ahead: what spare tasks found out.
     """
 
     parameters: Parameters
@@ -86,7 +85,7 @@ class ImaginationContext:
     reporter: Reporter
     bodies: BodyFiles = field(default_factory=BodyFiles)
     spare: list[SpareTask] = field(default_factory=list)
-    drops_ahead: DropsAhead = field(default_factory=DropsAhead)
+    ahead: Ahead = field(default_factory=Ahead)
 
     def reading(self, parameters: Parameters) -> ImaginationContext:
         """Return the same with other parameters."""

@@ -12,6 +12,7 @@ from core.collision import CollisionModel
 from core.errors import StageError
 from core.files import read_json, write_json
 from core.imagination.capacity.basin import ML
+from core.imagination.capacity.finding import find_ahead
 from core.imagination.capacity.imagine import imagine_capacity
 from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
@@ -95,12 +96,14 @@ def judge_ahead(context: ImaginationContext, model: CollisionModel) -> None:
     asked about.
     """
     leaky, parameters = None if model.unseen is None else model.unseen.leaky, context.parameters
-    by_omega = parameters.containability.verdict == "omega"
-    if leaky is None or by_omega or context.runner.workers == 1:
+    if parameters.containability.verdict == "omega" or context.runner.workers == 1:
+        return
+    find_ahead(context, model.surface)
+    if leaky is None:
         return
     with suppress(StageError):  # smaller than a candy: the verdict says so if it comes to that
         task = drop_task(context, CollisionModel.exact(leaky))
-        context.spare.append((task, partial(context.drops_ahead.keep, leaky, parameters)))
+        context.spare.append((task, partial(context.ahead.keep, leaky, parameters)))
 
 
 def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
@@ -114,7 +117,7 @@ def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict:
     if unseen is None or other is None:
         return verdict
     body = CollisionModel.exact(other)
-    drop = context.drops_ahead.of(other, context.parameters) or imagine_drop(context, body)
+    drop = context.ahead.of(other, context.parameters) or imagine_drop(context, body)
     share = capacity_share(context, body, drop)
     return replace(verdict, unseen_ml=unseen.unseen_ml, other_share=share)
 

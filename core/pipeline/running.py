@@ -16,7 +16,7 @@ from core.collision import CollisionModel, simplify
 from core.imagination.amount.reasoning import plan_amount
 from core.imagination.amount.result import PlannedAmount
 from core.imagination.choice import choose_pour
-from core.imagination.context import BodyFiles, DropsAhead, ImaginationContext, SpareTask
+from core.imagination.context import Ahead, BodyFiles, ImaginationContext, SpareTask
 from core.imagination.cup_runs import CupRuns
 from core.imagination.drop import imagine_drop
 from core.imagination.judgement import Judgement, judge, judge_ahead
@@ -60,7 +60,7 @@ class Tools:
         early: takes each still as soon as it is drawn; none: nobody waits for one.
         cell: whose arm shall pour; none: nobody asks about an arm.
         spare: what idle processors may compute already.
-        drops_ahead: what they made of it.
+        ahead: what they found out.
     """
 
     runner: TaskRunner
@@ -70,13 +70,11 @@ class Tools:
     early: Path | None = None
     cell: PourCell | None = None
     spare: list[SpareTask] = field(default_factory=list)
-    drops_ahead: DropsAhead = field(default_factory=DropsAhead)
+    ahead: Ahead = field(default_factory=Ahead)
 
     def context(self, parameters: Parameters) -> ImaginationContext:
         """Return the context of an imagination that reads these parameters."""
-        return ImaginationContext(
-            parameters, self.runner, self.reporter, self.bodies, self.spare, self.drops_ahead
-        )
+        return ImaginationContext(parameters, self.runner, self.reporter, self.bodies, self.spare, self.ahead)
 
 
 @dataclass(frozen=True)

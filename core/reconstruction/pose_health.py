@@ -14,6 +14,7 @@ import numpy.typing as npt
 from core.geometry import FloatArray
 from core.parameters.reconstruction import ReconstructionParameters
 from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan, crop_box_of
+from core.threads import in_threads
 
 STRIDE = 6
 SURROUNDINGS_M = 0.3
@@ -69,7 +70,11 @@ class PoseHealth:
 def find_tables(scan: Scan, parameters: ReconstructionParameters) -> tuple[Plane | None, ...]:
     """Fit the table in every view, near the crop box; none where it is not seen."""
     box = crop_box_of(scan, parameters)
-    return tuple(_find_table(frame, scan.intrinsics, box, parameters.max_depth_m) for frame in scan.frames)
+
+    def find(frame: RgbdFrame) -> Plane | None:
+        return _find_table(frame, scan.intrinsics, box, parameters.max_depth_m)
+
+    return tuple(in_threads(find, scan.frames))
 
 
 def pose_health_of(scan: Scan, tables: Sequence[Plane | None], box: CropBox) -> PoseHealth:

@@ -11,9 +11,7 @@ whose walls are thicker as long as the poses err.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numba
@@ -22,6 +20,7 @@ import numpy.typing as npt
 
 from core.geometry import FloatArray, IntArray, transform_points
 from core.scan.model import CropBox, DepthImage, Intrinsics, RgbdFrame, Scan
+from core.threads import in_threads
 
 PlaneImage = npt.NDArray[np.float32]
 
@@ -138,10 +137,11 @@ class ViewSurfaces:
 
 def view_surfaces(scan: Scan, planes: Sequence[PlaneImage], block: CropBox) -> ViewSurfaces:
     """Choose points of every view in a block (base frame) around the object."""
-    chosen = [
-        _points(plane, frame, scan.intrinsics, block)
-        for plane, frame in zip(planes, scan.frames, strict=True)
-    ]
+
+    def choose(view: tuple[PlaneImage, RgbdFrame]) -> tuple[FloatArray, FloatArray]:
+        return _points(*view, scan.intrinsics, block)
+
+    chosen = in_threads(choose, zip(planes, scan.frames, strict=True))
     points, normals = (np.concatenate(parts) for parts in zip(*chosen, strict=True))
     view = np.repeat(np.arange(len(chosen)), [len(of_view) for of_view, _ in chosen])
     return ViewSurfaces(np.stack(planes), points, normals, view, _pixels(scan.intrinsics))
@@ -223,8 +223,7 @@ def compare_views(
 
     # Each view writes rows of its own, so that the result does not depend on the number of threads.
     starts = np.searchsorted(surfaces.view, np.arange(n_views + 1))
-    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as threads:
-        list(threads.map(match, map(slice, starts[:-1].tolist(), starts[1:].tolist())))
+    in_threads(match, map(slice, starts[:-1].tolist(), starts[1:].tolist()))
     pairs += np.tril(pairs, -1).swapaxes(2, 3)
     vector = pulls.sum(axis=0) - pulls.sum(axis=1)
     matrix = np.zeros((n_views, 6, n_views, 6))

@@ -36,7 +36,8 @@ from core.reconstruction.segmentation import (
 )
 from core.reconstruction.tsdf import DistanceGrid, TsdfVolume, extract_surface, largest_piece
 from core.reconstruction.unseen import find_unseen_inside
-from core.scan.model import CropBox, Scan, crop_box_of
+from core.scan.model import CropBox, RgbdFrame, Scan, crop_box_of
+from core.threads import in_threads
 from core.unseen_readings import UnseenReadings
 
 STAGE = "reconstruction"
@@ -280,11 +281,12 @@ def fit_all_planes(scan: Scan, max_depth_m: float, reporter: Reporter) -> tuple[
     Raises:
         Cancelled: the user asked to stop.
     """
-    planes = []
-    for frame in scan.frames:
+
+    def fit(frame: RgbdFrame) -> PlaneImage:
         reporter.raise_if_cancelled()
-        planes.append(fit_planes(frame.depth_m, scan.intrinsics, max_depth_m))
-    return tuple(planes)
+        return fit_planes(frame.depth_m, scan.intrinsics, max_depth_m)
+
+    return tuple(in_threads(fit, scan.frames))
 
 
 def fuse(

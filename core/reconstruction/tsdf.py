@@ -6,6 +6,8 @@ theirs to rounding.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numba
 import numpy as np
 import numpy.typing as npt
@@ -17,6 +19,7 @@ from core.errors import StageError
 from core.geometry import BoolArray, FloatArray, IntArray
 from core.mesh import TriangleMesh
 from core.scan.model import DepthImage, Intrinsics, RgbdFrame
+from core.threads import in_threads
 
 DistanceGrid = npt.NDArray[np.float32]
 
@@ -35,6 +38,8 @@ BEHIND_FASTER = np.float32(1.4)
 """And how much faster that falls behind than in front, so that nothing becomes thicker than it must."""
 SURFACE_BAND = 0.2
 """Share of the truncation within which an observed voxel counts as surface (released code)."""
+SLABS = 8
+"""Parts of a volume that threads fuse: a few for each processor, for the views see some more than others."""
 
 
 class TsdfVolume:
@@ -97,27 +102,33 @@ class TsdfVolume:
         view: 1 where a surface is seen straight on. Without it all pixels count as if they were.
         """
         depth_m = np.ascontiguousarray(frame.depth_m, dtype=np.float32)
-        _integrate(
-            self.distance,
-            self.evidence,
-            self.weight,
-            self.hidden,
-            self.origin_m.astype(np.float32),
-            np.float32(self.voxel_m),
-            np.float32(self.truncation_m),
-            np.float32(self.behind_m),
-            np.float32(self.falloff_m),
-            *(
-                (BEHIND_GAIN, BEHIND_FASTER)
-                if np.isfinite(self.falloff_m)
-                else (np.float32(1), np.float32(1))
-            ),
-            depth_m,
-            np.ones_like(depth_m) if facing is None else facing,
-            intrinsics.matrix.astype(np.float32),
-            np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
-            np.float32(max_depth_m),
-        )
+        facing = np.ones_like(depth_m) if facing is None else facing
+        one = np.float32(1)
+        behind = (BEHIND_GAIN, BEHIND_FASTER) if np.isfinite(self.falloff_m) else (one, one)
+
+        def fuse(slab: tuple[int, int]) -> None:
+            _integrate(
+                self.distance,
+                self.evidence,
+                self.weight,
+                self.hidden,
+                *slab,
+                self.origin_m.astype(np.float32),
+                np.float32(self.voxel_m),
+                np.float32(self.truncation_m),
+                np.float32(self.behind_m),
+                np.float32(self.falloff_m),
+                *behind,
+                depth_m,
+                facing,
+                intrinsics.matrix.astype(np.float32),
+                np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
+                np.float32(max_depth_m),
+            )
+
+        # No voxel asks another one, so that the result does not depend on the number of threads.
+        borders = np.linspace(0, len(self.distance), SLABS + 1).astype(int).tolist()
+        in_threads(fuse, pairwise(borders))
 
     def mesh(self) -> TriangleMesh:
         """Everything fused so far as a closed surface in the base frame; empty before anything was seen."""
@@ -138,6 +149,8 @@ def _integrate(
     evidence: DistanceGrid,
     weight: npt.NDArray[np.uint16],
     hidden: BoolArray,
+    first: int,
+    end: int,
     origin_m: npt.NDArray[np.float32],
     voxel_m: np.float32,
     truncation_m: np.float32,
@@ -151,10 +164,10 @@ def _integrate(
     pose: npt.NDArray[np.float32],
     max_depth_m: np.float32,
 ) -> None:
-    """Fuse one view in place."""
+    """Fuse one view in place, in the layers from `first` to before `end` of the first axis."""
     height, width = depth_m.shape
     one = np.float32(1.0)
-    for i in range(distance.shape[0]):
+    for i in range(first, end):
         x = (origin_m[0] + np.float32(i) * voxel_m) - pose[0, 3]
         for j in range(distance.shape[1]):
             y = (origin_m[1] + np.float32(j) * voxel_m) - pose[1, 3]

@@ -10,6 +10,7 @@ import numpy as np
 from core.collision import CollisionModel
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.filling import Filling, FillPlan, filling_task, rain_places
+from core.imagination.capacity.finding import HALF, STAGE, basin_of, find_beside, usual_bulk_ml
 from core.imagination.capacity.openings import has_opening_below
 from core.imagination.capacity.result import Capacity
 from core.imagination.capacity.stand_in import (
@@ -21,13 +22,12 @@ from core.imagination.capacity.stand_in import (
 )
 from core.imagination.context import ImaginationContext
 from core.imagination.object_at_rest import ObjectAtRest
-from core.imagination.particle_shape import particle_extents_m, particle_volume_m3
+from core.imagination.particle_shape import particle_extents_m
 from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.workers import Task
 
-STAGE = "capacity"
 ARCH = "Candies only arch over an opening that they can pass: smaller ones fall through."
 _HEAPED = 0.5
 """Share of what stays that lies below a rim, below which an arch is possible."""
@@ -41,13 +41,8 @@ _WIDE = 0.85
 """Width of such an opening, in candies, from which on they may pass; a lattice takes it for narrower."""
 _FEW = 60
 """Half as large candies that show whether they run out."""
-_HALF = 0.5
-"""Candies half as large are asked about; a scan has gaps of its own that smaller ones would pass."""
 _FALL_THROUGH = 0.5
 """Share of the hollow for candies, below which the hollow for half as large ones leaks."""
-_SMALLEST_CANDIES = 1.0
-"""A hollow counts when its bulk holds so many."""
-_USUAL_FRACTION = 0.6
 _MOST_FOR_MOUTH = 1.5
 """Times the balls aimed at that a narrow mouth may lead to: then they become larger than it would like."""
 _PLUGGED = 1.1
@@ -62,9 +57,8 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
         model: the object's body.
         drop: on the same object: candies rain where those that stayed had been dropped.
     """
-    parameters = context.parameters
-    task = _basin_task(model.surface, parameters.particle.diameter_m, parameters)
-    basin: Basin = context.run([task], STAGE)[0]
+    diameter_m = context.parameters.particle.diameter_m
+    basin = basin_of(context, model.surface, diameter_m)
     found = _filled(context, model, drop, basin)
     if model.surface_error_m == 0 or not found.n_kept:
         return found
@@ -105,11 +99,9 @@ def _filled(context: ImaginationContext, model: CollisionModel, drop: Drop, basi
     if not drop.retained.any():
         return _result(plan, basin, (), surface, parameters)
     if plan.stand_in.scale > 1:
-        task = _basin_task(surface, plan.stand_in.particle.diameter_m, parameters)
-        plan = _without_plugs(plan, basin, context.run([task], STAGE)[0])
+        plan = _without_plugs(plan, basin, basin_of(context, surface, plan.stand_in.particle.diameter_m))
     for_half: list[Basin] = []
-    half = _basin_task(surface, _HALF * parameters.particle.diameter_m, parameters)
-    context.spare.append((half, for_half.append))
+    find_beside(context, surface, HALF * parameters.particle.diameter_m, for_half.append)
     fillings = _fill(context, target, plan)
     below = _below_an_arch(context, model, drop, plan, fillings)
     if below is not None:
@@ -123,7 +115,7 @@ def _of_half(basin: Basin, for_half: Basin, parameters: Parameters) -> str:
     """What is to be said of candies half as large: empty if these would stay, too."""
     if for_half.candies_ml >= _FALL_THROUGH * basin.candies_ml:
         return ""
-    size_mm = 1000 * _HALF * parameters.particle.diameter_m
+    size_mm = 1000 * HALF * parameters.particle.diameter_m
     return f"Candies of {size_mm:.0f} mm would fall through its openings."
 
 
@@ -154,7 +146,7 @@ def _below_an_arch(
             return smaller, also
     drains = basin.water_ml < _DRAINS * basin.candies_ml
     if drains and has_opening(_WIDE * ball_diameter_m(parameters.particle)):
-        few = replace(plan, stand_in=smaller_candy(parameters, _HALF), n_expected=_FEW)
+        few = replace(plan, stand_in=smaller_candy(parameters, HALF), n_expected=_FEW)
         also = _fill(context, target, few)
         if sum(one.n_kept for one in also) < _ARCHES * sum(one.n_poured for one in also):
             return few, also
@@ -183,21 +175,10 @@ def _bulk_ml(plan: FillPlan, fillings: tuple[Filling, ...], basin: Basin) -> flo
     return fmean(one.n_kept for one in fillings) * bulk_ml(plan.stand_in.particle, basin.around)
 
 
-def _basin_task(surface: TriangleMesh, thickness_m: float, parameters: Parameters) -> Task:
-    smallest_ml = _SMALLEST_CANDIES * _usual_bulk_ml(parameters)
-    return Task(_find_basin, (surface, thickness_m, smallest_ml, parameters.capacity.lattice_points), 1.0)
-
-
-def _find_basin(surface: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
-    from core.imagination.capacity.water import find_basin  # loads numba: in the worker alone
-
-    return find_basin(surface, thickness_m, smallest_ml, points)
-
-
 def _plan(basin: Basin, found: Drop, parameters: Parameters) -> FillPlan:
     settings = parameters.capacity
     # What the drop left inside fits, whatever the geometry says of gaps.
-    n_candies = max(basin.candies_ml / _usual_bulk_ml(parameters), float(found.n_in))
+    n_candies = max(basin.candies_ml / usual_bulk_ml(parameters), float(found.n_in))
     stand_in = candy_itself(parameters)
     if n_candies > settings.n_real:
         scale = (n_candies / settings.n_aimed) ** (1 / 3)
@@ -217,11 +198,6 @@ def _without_plugs(plan: FillPlan, basin: Basin, for_balls: Basin) -> FillPlan:
     if for_balls.candies_ml <= _PLUGGED * basin.candies_ml or basin.candies_ml == 0:
         return plan
     return replace(plan, only_level=True)
-
-
-def _usual_bulk_ml(parameters: Parameters) -> float:
-    """What a candy takes up in a container of usual size."""
-    return particle_volume_m3(parameters.particle) * ML / _USUAL_FRACTION
 
 
 def _result(

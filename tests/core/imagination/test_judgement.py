@@ -1,7 +1,7 @@
 import pytest
 
 from core.collision import CollisionModel
-from core.imagination.context import DropsAhead, ImaginationContext
+from core.imagination.context import Ahead, ImaginationContext
 from core.imagination.drop import imagine_drop
 from core.imagination.judgement import Judgement, judge, judge_ahead
 from core.mesh import TriangleMesh
@@ -134,25 +134,34 @@ def test_what_may_leak_is_dropped_on_beside_the_drop_itself_with_the_same_answer
 
     ahead, later = judged(True), judged(False)
     assert ahead[0] == later[0] and ahead[0].is_undecided
-    assert (ahead[1], later[1]) == ([2], [1, 1])
+    # The drop, what may leak, and the two hollows that any verdict asks for.
+    assert (ahead[1], later[1]) == ([4], [1, 1])
+
+
+def test_hollows_are_found_beside_the_drop_with_the_same_answer(dish, few, pool):
+    def judged(is_ahead: bool):
+        context = ImaginationContext(few, counting := Counting(pool), Reporter())
+        if is_ahead:
+            judge_ahead(context, dish)
+        judgement = judge(context, dish, imagine_drop(context, dish))
+        return judgement, sum(n for stage, n in counting.ran if stage == "capacity")
+
+    (ahead, n_ahead), (later, n_later) = judged(True), judged(False)
+    assert ahead.verdict == later.verdict
+    assert ahead.capacity.to_table() == later.capacity.to_table()
+    assert n_later - n_ahead == 2
 
 
 def test_nothing_is_begun_ahead_that_no_answer_asks_for(dish, pipe, few, pool):
-    seen = UnseenReadings(40.0, dish.surface)
-    leaking = UnseenReadings(40.0, dish.surface, pipe)
     by_omega = apply_settings(few, {"containability.verdict": "omega"})
-    for unseen, parameters, runner in (
-        (seen, few, pool),
-        (leaking, by_omega, pool),
-        (leaking, few, RunHere()),
-    ):
+    for parameters, runner in ((by_omega, pool), (few, RunHere())):
         context = ImaginationContext(parameters, runner, Reporter())
-        judge_ahead(context, CollisionModel.exact(dish.surface, unseen))
+        judge_ahead(context, CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface, pipe)))
         assert not context.spare
 
 
 def test_a_drop_that_was_made_ahead_is_that_of_its_surface_and_parameters(dish, dish_judged, few):
-    ahead, drop = DropsAhead(), dish_judged.containability
+    ahead, drop = Ahead(), dish_judged.containability
     ahead.keep(dish.surface, few, drop)
     others = apply_settings(few, {"containability.contact.lateral_friction": 0.9})
     assert ahead.of(dish.surface, few) is drop

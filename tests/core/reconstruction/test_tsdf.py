@@ -7,6 +7,7 @@ import pytest
 
 from core.errors import StageError
 from core.geometry import look_at
+from core.reconstruction import tsdf
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan import Intrinsics, RgbdFrame
 
@@ -83,6 +84,16 @@ def test_behind_the_surface_a_view_counts_only_as_far_as_it_may(volume):
     assert (short.distance[front, 10, 10] == volume.distance[front, 10, 10]).all()
     assert (short.weight[:, 10, 10] > 0).tolist() == (x_m < 0.507).tolist()
     assert short.hidden[:, 10, 10].tolist() == (x_m > 0.507).tolist()
+
+
+def test_however_many_slabs_threads_fuse_the_result_is_the_same(volume, monkeypatch):
+    whole = TsdfVolume((0.4, -0.05, -0.05), (0.6, 0.05, 0.05), 0.005, 0.02)
+    volume.integrate(wall(0.499), CAMERA, 6.0)
+    monkeypatch.setattr(tsdf, "SLABS", 1)
+    whole.integrate(wall(0.499), CAMERA, 6.0)
+    for name in ("distance", "evidence", "weight", "hidden"):
+        assert (getattr(volume, name) == getattr(whole, name)).all()
+    assert whole.weight.any()
 
 
 def seen_from_both_sides(thickness_m: float, falloff_m: float) -> float:
