@@ -132,6 +132,7 @@ class Chip(QWidget):
         self._text = ""
         self._plate = ""
         self._state: State | None = None
+        self._shown: tuple[str, str, State | None, str] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     @property
@@ -140,7 +141,15 @@ class Chip(QWidget):
         return self._text
 
     def show_text(self, text: str, *, plate: str = "", state: State | None = None, tip: str = "") -> None:
-        """Show a text; on a plate if one of the theme's colours is named."""
+        """Show a text; on a plate if one of the theme's colours is named.
+
+        What is shown already is not drawn again: the arm reports ten times a second, and each time the whole
+        window would be composed with its 3D view.
+        """
+        shown = (text, plate, state, tip)
+        if shown == self._shown:
+            return
+        self._shown = shown
         self._text, self._plate, self._state = text, plate, state
         self.setAccessibleName(text)
         self.setToolTip(tip)

@@ -379,6 +379,34 @@ def test_an_arm_that_moves_is_said_to_move(window):
         assert chip.text == said, "shown again for another reason"
 
 
+def test_an_arm_that_stands_draws_nothing_again(window, qtbot):
+    arm = window.desk.arm
+    arm.connected = SimpleNamespace(name="UR5", pid=0)
+    painted: list[str] = []
+
+    class Painted(QObject):
+        def eventFilter(self, watched, event):
+            if event.type() == QEvent.Type.Paint:
+                painted.append(watched.objectName())
+            return False
+
+    def report(joint_rad: float) -> None:
+        arm.status = ArmStatus(SimpleNamespace(joints_rad=np.full(6, joint_rad)), False, "")
+        arm.changed.emit()
+
+    report(0.0)
+    qtbot.wait(100)  # what else there is to draw is drawn
+    seen = Painted()
+    for chip in window.findChildren(Chip):
+        chip.installEventFilter(seen)
+    for _ in range(5):
+        report(0.0)
+        qtbot.wait(20)
+    assert painted == []
+    report(0.1)
+    qtbot.waitUntil(lambda: "robot_chip" in painted)
+
+
 def test_the_operators_guide_is_in_the_help_menu_with_all_its_pictures(window, qtbot):
     menus = Menus(window)
     help_menu = next(menu for menu in menus.findChildren(QMenu) if menu.title() == "&Help")
