@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -51,13 +51,13 @@ class Ahead:
     """What idle processors found out about surfaces before anybody asked."""
 
     def __init__(self) -> None:
-        self._made: list[tuple[TriangleMesh, Hashable | Parameters, Any]] = []
+        self._made: list[tuple[TriangleMesh, object, Any]] = []
 
-    def keep(self, surface: TriangleMesh, asked: Hashable | Parameters, result: Any) -> None:
+    def keep(self, surface: TriangleMesh, asked: object, result: Any) -> None:
         """Keep a result; `asked` tells what of the surface, and with which settings."""
         self._made.append((surface, asked, result))
 
-    def of(self, surface: TriangleMesh, asked: Hashable | Parameters) -> Any:
+    def of(self, surface: TriangleMesh, asked: object) -> Any:
         """Return what was found of that very surface; none if nothing was."""
         made = (result for one, known, result in self._made if one is surface and known == asked)
         return next(made, None)
