@@ -24,6 +24,9 @@ _SURE = 8.0
 _MOVED_M, _MOVED_RAD = 0.002, np.radians(0.5)
 """Less cannot be told from what the arm's own kinematics do; the covariance grows with it."""
 _OTHER_SQUARE = 0.004
+_SURE_SQUARE = 16.0
+"""Of squares: four standard deviations. With 8 about one right board in 200 would be said to be wrong; squares
+1 % wrong are found with 15 views, and nearly always with 10 (docs/calibrating.md)."""
 _MOST_OUTLIERS = 0.25
 _SCALE_STEPS = 3
 
@@ -115,7 +118,7 @@ def find_other_square(fit: HandEyeFit, views: Sequence[BoardView], board: BoardS
         by_scale = _whitened_scale(now, views, scaled)
         improvement, change = _improvement(errors, by_unknowns, by_scale)
         f = improvement if step == 0 else f
-        if f < _SURE:
+        if f < _SURE_SQUARE:
             return None
         scaled = with_square(scaled, scaled.square_m * (1 + float(change[0])))
         now = fit_rig(now.rig, views, scaled, N_POSES, rounds=2)

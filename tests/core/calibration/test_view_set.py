@@ -68,7 +68,7 @@ def test_a_board_that_moved_is_noticed_with_its_views(shift_m):
     assert f"by {shift_m * 1000:.0f}" in said
 
 
-@pytest.mark.parametrize("square_m", [0.0285, 0.0306, 0.025])
+@pytest.mark.parametrize("square_m", [0.0285, 0.0297, 0.0303, 0.0306, 0.025])
 def test_squares_of_another_size_than_entered_are_measured(square_m):
     entered = with_square(BOARD, square_m)
     views = scaled(diverse_views(20, 7), entered)
@@ -76,6 +76,12 @@ def test_squares_of_another_size_than_entered_are_measured(square_m):
     assert f"not {square_m * 1000:.2f} mm" in said
     measured_mm = float(said.split(" are ")[1].split(" mm")[0])
     assert measured_mm == pytest.approx(30.0, abs=0.1)
+
+
+def test_right_squares_are_never_said_to_be_others():
+    for seed in range(20, 50):
+        views = diverse_views(10, seed)
+        assert why_wrong(calibrate_hand_eye(views, BOARD, INTRINSICS), views, BOARD) is None
 
 
 def test_a_quarter_of_contradicting_views_is_refused():
