@@ -25,8 +25,8 @@ _MOVED_M, _MOVED_RAD = 0.002, np.radians(0.5)
 """Less cannot be told from what the arm's own kinematics do; the covariance grows with it."""
 _OTHER_SQUARE = 0.004
 _SURE_SQUARE = 16.0
-"""Of squares: four standard deviations. With 8 about one right board in 200 would be said to be wrong; squares
-1 % wrong are found with 15 views, and nearly always with 10 (docs/calibrating.md)."""
+"""Of squares: four standard deviations. With 8 one right board in 200 would be said to be wrong; squares that
+are 1 % wrong are found with 15 views, and mostly with 10 (docs/calibrating.md)."""
 _MOST_OUTLIERS = 0.25
 _SCALE_STEPS = 3
 
