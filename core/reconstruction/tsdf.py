@@ -106,25 +106,23 @@ class TsdfVolume:
         one = np.float32(1)
         behind = (BEHIND_GAIN, BEHIND_FASTER) if np.isfinite(self.falloff_m) else (one, one)
 
+        grids = self.distance, self.evidence, self.weight, self.hidden
+        view = (
+            self.origin_m.astype(np.float32),
+            np.float32(self.voxel_m),
+            np.float32(self.truncation_m),
+            np.float32(self.behind_m),
+            np.float32(self.falloff_m),
+            *behind,
+            depth_m,
+            facing,
+            intrinsics.matrix.astype(np.float32),
+            np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
+            np.float32(max_depth_m),
+        )
+
         def fuse(slab: tuple[int, int]) -> None:
-            _integrate(
-                self.distance,
-                self.evidence,
-                self.weight,
-                self.hidden,
-                *slab,
-                self.origin_m.astype(np.float32),
-                np.float32(self.voxel_m),
-                np.float32(self.truncation_m),
-                np.float32(self.behind_m),
-                np.float32(self.falloff_m),
-                *behind,
-                depth_m,
-                facing,
-                intrinsics.matrix.astype(np.float32),
-                np.ascontiguousarray(frame.T_base_camera, dtype=np.float32),
-                np.float32(max_depth_m),
-            )
+            _integrate(*grids, *slab, *view)
 
         # No voxel asks another one, so that the result does not depend on the number of threads.
         borders = np.linspace(0, len(self.distance), SLABS + 1).astype(int).tolist()

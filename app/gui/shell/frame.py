@@ -132,7 +132,6 @@ class Chip(QWidget):
         self._text = ""
         self._plate = ""
         self._state: State | None = None
-        self._shown: tuple[str, str, State | None, str] | None = None
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     @property
@@ -146,10 +145,8 @@ class Chip(QWidget):
         What is shown already is not drawn again: the arm reports ten times a second, and each time the whole
         window would be composed with its 3D view.
         """
-        shown = (text, plate, state, tip)
-        if shown == self._shown:
+        if (text, plate, state, tip) == (self._text, self._plate, self._state, self.toolTip()):
             return
-        self._shown = shown
         self._text, self._plate, self._state = text, plate, state
         self.setAccessibleName(text)
         self.setToolTip(tip)

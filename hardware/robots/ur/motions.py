@@ -60,6 +60,12 @@ class Control(Protocol):
     def stopJ(self, a: float, asynchronous: bool) -> None: ...  # noqa: D102
 
 
+def joints_at_rest(raw: AnyArray) -> FloatArray | None:
+    """Return the joints (6,), rad, of a state of `FIELDS` in which the arm rests; none if it moves."""
+    is_at_rest = np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S
+    return raw["joints_rad"] if is_at_rest else None
+
+
 class Motion(Protocol):
     """A motion under way.
 

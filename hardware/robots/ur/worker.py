@@ -26,18 +26,15 @@ from core.geometry import AnyArray, FloatArray
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import (
-    DeviceError,
     MoveRefused,
-    NotInRemoteControl,
     ProgramStopped,
     RobotError,
-    RobotNotReady,
     RobotStopped,
-    RobotUnreachable,
     TrackingLost,
 )
 from hardware.realtime import take_precedence
 from hardware.robots.ur.checks import deviation, moved_at_rest, output_changed, raise_if, unsafe
+from hardware.robots.ur.connecting import refused_connection
 from hardware.robots.ur.heartbeat import Heartbeat
 from hardware.robots.ur.held_object import HeldObject
 from hardware.robots.ur.messages import (
@@ -53,7 +50,7 @@ from hardware.robots.ur.messages import (
     StateMailbox,
     tool_outputs,
 )
-from hardware.robots.ur.motions import RESTING_RAD_S, Following, JointMoves, Motion, UsualLag
+from hardware.robots.ur.motions import RESTING_RAD_S, Following, JointMoves, Motion, UsualLag, joints_at_rest
 
 _HANGS_S = 12
 """Later than the parent, which ends a worker that does not connect in time; this is for when it is gone."""
@@ -124,7 +121,7 @@ class _Worker:
             self._io = rtde_io.RTDEIOInterface(setup.address)
             self._set_up(setup)
         except RuntimeError as error:
-            raise _explain(error, setup.address) from error
+            raise refused_connection(error, setup.address) from error
 
     def run(self) -> NoReturn:
         """Serve requests and move, until the parent is gone."""
@@ -258,7 +255,7 @@ class _Worker:
             if not is_done:
                 return
             # From this state on: the arm may be pushed before the next one is read.
-            self._note_rest(raw)
+            self._rest_rad = joints_at_rest(raw)
         except RobotError as wrong:
             error = wrong
         except RuntimeError as failed:
@@ -279,17 +276,15 @@ class _Worker:
 
         The thread that reads watches: the other one may wait for a program that another one has replaced.
         """
-        self._note_rest(raw)
+        rest_rad = self._rest_rad  # the other thread may begin a motion, and forget it
+        if rest_rad is None:
+            rest_rad = self._rest_rad = joints_at_rest(raw)
         error = deviation(raw)
-        if error is None and self._rest_rad is not None:
-            error = moved_at_rest(raw["joints_rad"], self._rest_rad)
+        if error is None and rest_rad is not None:
+            error = moved_at_rest(raw["joints_rad"], rest_rad)
         if error is not None:
             self._is_over = True
             Thread(target=self._report_rest, args=(error,), daemon=True).start()
-
-    def _note_rest(self, raw: AnyArray) -> None:
-        if self._rest_rad is None and np.abs(raw["joint_speeds_rad_s"]).max() < RESTING_RAD_S:
-            self._rest_rad = raw["joints_rad"]
 
     def _report_rest(self, error: RobotError) -> None:
         self._send(Ended(self._reason(error), 0.0))
@@ -379,25 +374,3 @@ class _Worker:
             raw["output_bits"] = receive.getActualDigitalOutputBits()
             raw["tool_force_n"] = np.linalg.norm(receive.getActualTCPForce()[:3])
         return raw
-
-
-def _explain(error: RuntimeError, address: str) -> DeviceError:
-    """What ur_rtde's own messages mean for people."""
-    message = str(error)
-    if "remote control" in message:
-        return NotInRemoteControl(
-            f"The controller at {address} is in local control; choose remote control at the top right of its "
-            "panel, then recover the robot."
-        )
-    if "in use" in message or "variables" in message:
-        return RobotNotReady(
-            f"Another program drives the arm at {address} already; end it, then recover the robot."
-        )
-    if "control script" in message:
-        return RobotNotReady(
-            f"The control program does not start on the controller at {address}; see what its panel shows, "
-            "then recover the robot."
-        )
-    return RobotUnreachable(
-        f"The controller at {address} broke off ({message}); check the network cable, then try again."
-    )

@@ -158,6 +158,9 @@ def test_nothing_is_begun_ahead_that_no_answer_asks_for(dish, pipe, few, pool):
         context = ImaginationContext(parameters, runner, Reporter())
         judge_ahead(context, CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface, pipe)))
         assert not context.spare
+    context = ImaginationContext(few, pool, Reporter())
+    judge_ahead(context, CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface)))
+    assert len(context.spare) == 2, "the hollows alone: no drop on what cannot leak"
 
 
 def test_a_drop_that_was_made_ahead_is_that_of_its_surface_and_parameters(dish, dish_judged, few):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from types import SimpleNamespace
 
-import numpy as np
 import psutil
 import pytest
 from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, QUrl
@@ -24,7 +23,6 @@ from app.gui.shell.job_bar import MessageBar, next_step
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
 from app.gui.theme import DARK, LIGHT, THEMES, apply_theme, theme_of
-from app.jobs.arm_events import ArmStatus
 from app.jobs.messages import FailureKind
 from app.jobs.session_work import SessionWork
 from app.library.session_folder import remembered_parameters
@@ -365,46 +363,6 @@ def test_an_edit_is_kept_though_nothing_was_run_with_it(window, mug_session, qtb
     workspace.close()
     window.desk.open_session(mug_session)
     assert workspace.parameters.seed == 77
-
-
-def test_an_arm_that_moves_is_said_to_move(window):
-    arm, chip = window.desk.arm, window.findChild(Chip, "robot_chip")
-    arm.connected = SimpleNamespace(name="UR5", pid=0)
-    for joint_rad, said in ((0.0, "robot ready"), (0.1, "MOVING"), (0.2, "MOVING"), (0.2, "robot ready")):
-        state = SimpleNamespace(joints_rad=np.full(6, joint_rad))
-        arm.status = ArmStatus(state, False, "")
-        arm.changed.emit()
-        assert chip.text == said
-        window.desk.cell.changed.emit()
-        assert chip.text == said, "shown again for another reason"
-
-
-def test_an_arm_that_stands_draws_nothing_again(window, qtbot):
-    arm = window.desk.arm
-    arm.connected = SimpleNamespace(name="UR5", pid=0)
-    painted: list[str] = []
-
-    class Painted(QObject):
-        def eventFilter(self, watched, event):
-            if event.type() == QEvent.Type.Paint:
-                painted.append(watched.objectName())
-            return False
-
-    def report(joint_rad: float) -> None:
-        arm.status = ArmStatus(SimpleNamespace(joints_rad=np.full(6, joint_rad)), False, "")
-        arm.changed.emit()
-
-    report(0.0)
-    qtbot.wait(100)  # what else there is to draw is drawn
-    seen = Painted()
-    for chip in window.findChildren(Chip):
-        chip.installEventFilter(seen)
-    for _ in range(5):
-        report(0.0)
-        qtbot.wait(20)
-    assert painted == []
-    report(0.1)
-    qtbot.waitUntil(lambda: "robot_chip" in painted)
 
 
 def test_the_operators_guide_is_in_the_help_menu_with_all_its_pictures(window, qtbot):
