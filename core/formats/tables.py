@@ -152,6 +152,7 @@ class Verdict(TypedDict):
     other_share: NotRequired[FiniteFloat | None]
     least_ml: NotRequired[FiniteFloat | None]
     most_ml: NotRequired[FiniteFloat | None]
+    too_small_m: NotRequired[FiniteFloat | None]
 
 
 class Drop(TypedDict):
@@ -194,6 +195,7 @@ class Capacity(TypedDict):
     least_ml: NotRequired[FiniteFloat | None]
     most_ml: NotRequired[FiniteFloat | None]
     unseen_ml: NotRequired[FiniteFloat]
+    too_small_m: NotRequired[FiniteFloat | None]
 
 
 class Holding(TypedDict):

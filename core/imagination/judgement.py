@@ -85,6 +85,7 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         capacity.stand_in_diameter_m is not None,
         least_ml=capacity.least_ml,
         most_ml=capacity.most_ml,
+        too_small_m=capacity.too_small_m,
     )
     return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity)
 

@@ -25,6 +25,7 @@ class Verdict:
         unseen_ml: volume behind its openings that no view saw; zero if that could not matter.
         least_ml: what `level_ml` truly is at least, by what the scan leaves open; none if it was not scanned.
         most_ml: and at most; none likewise, and where part of the inside was not seen.
+        too_small_m: size of candies that would fall through its openings; none if half as large ones stay.
         other_share: `capacity_share` if the unseen is not solid, which could change the answer; else none.
     """
 
@@ -39,6 +40,7 @@ class Verdict:
     other_share: float | None = None
     least_ml: float | None = None
     most_ml: float | None = None
+    too_small_m: float | None = None
 
     @property
     def is_container(self) -> bool:

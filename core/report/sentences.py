@@ -111,7 +111,11 @@ def capacity_text(verdict: Verdict) -> str:
     hollow = f"hollow for {100 * verdict.capacity_share:.0f}{_NO_BREAK}% of its bulk {needed}"
     if verdict.n_candies < 0.5:
         return hollow
-    return f"{held_text(verdict)}. {hollow.capitalize()}"
+    through = ""
+    if verdict.too_small_m is not None:
+        size = f"{MM * verdict.too_small_m:.0f}{_NO_BREAK}mm"
+        through = f"Candies of {size} would fall through its openings. "
+    return f"{held_text(verdict)}. {through}{hollow.capitalize()}"
 
 
 def held_text(verdict: Verdict) -> str:

@@ -107,16 +107,9 @@ def _filled(context: ImaginationContext, model: CollisionModel, drop: Drop, basi
     if below is not None:
         return replace(_result(below[0], basin, below[1], surface, parameters), explanation=ARCH)
     found = _result(plan, basin, fillings, surface, parameters)
-    through = _of_half(basin, for_half[0], parameters)
-    return replace(found, explanation=" ".join(filter(None, (found.explanation, through))))
-
-
-def _of_half(basin: Basin, for_half: Basin, parameters: Parameters) -> str:
-    """What is to be said of candies half as large: empty if these would stay, too."""
-    if for_half.candies_ml >= _FALL_THROUGH * basin.candies_ml:
-        return ""
-    size_mm = 1000 * HALF * parameters.particle.diameter_m
-    return f"Candies of {size_mm:.0f} mm would fall through its openings."
+    if for_half[0].candies_ml >= _FALL_THROUGH * basin.candies_ml:
+        return found
+    return replace(found, too_small_m=HALF * parameters.particle.diameter_m)
 
 
 def _fill(context: ImaginationContext, target: ObjectAtRest, plan: FillPlan) -> tuple[Filling, ...]:

@@ -49,6 +49,7 @@ class Capacity:
         least_ml: level volume if the surface errs inwards as far as it may; none if it was not scanned.
         most_ml: the same outwards; none likewise, and where part of the inside was not seen.
         unseen_ml: of the inside, at least; zero if all was seen.
+        too_small_m: size of candies that would fall through its openings; none if half as large ones stay.
     """
 
     n_candies: float
@@ -72,6 +73,7 @@ class Capacity:
     least_ml: float | None = None
     most_ml: float | None = None
     unseen_ml: float = 0.0
+    too_small_m: float | None = None
 
     @property
     def n_level(self) -> float:

@@ -37,6 +37,11 @@ def test_a_verdict_by_capacity_says_what_it_holds_and_the_papers_stands_beside(t
     assert omega_verdict_sentence(holds).startswith(
         "By Omega an open container: 146 of 308 dropped candies stayed"
     )
+    sieve = replace(tray, verdict=Verdict(0.634, 0.1, 137.2, 146.4, too_small_m=0.0066))
+    assert verdict_sentence(sieve).replace("\u00a0", " ") == (
+        "Open container: it holds 137 candies (146 ml). Candies of 7 mm would fall through its openings. "
+        "Hollow for 63 % of its bulk (containers: over 10 %)."
+    )
     lies_on = replace(tray, verdict=Verdict(0.034, 0.1, 47.0, 54.0))
     assert verdict_sentence(lies_on).replace("\u00a0", " ") == (
         "Not an open container: it holds 47 candies (54 ml). "

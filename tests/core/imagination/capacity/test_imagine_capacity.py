@@ -101,9 +101,8 @@ def test_nothing_is_poured_where_no_candy_stayed(block, candies, few, tmp_path):
 def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few):
     slit = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003, notch_m=(0.010, 0.035)))
     whole = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003))
-    said = "Candies of 7 mm would fall through its openings."
-    assert said in fill(slit, candies, few, RunHere()).explanation
-    assert said not in fill(whole, candies, few, RunHere()).explanation
+    assert fill(slit, candies, few, RunHere()).too_small_m == candies.particle.diameter_m / 2
+    assert fill(whole, candies, few, RunHere()).too_small_m is None
 
 
 @pytest.mark.system
