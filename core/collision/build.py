@@ -158,7 +158,8 @@ def _distances_m(mesh: TriangleMesh, coarse: TriangleMesh) -> FloatArray:
         return np.zeros(1)
     if not len(coarse.faces):
         return np.full(1, np.inf)
-    return SurfaceDistance(coarse).of_m(mesh.vertices_m[:: 1 + len(mesh.vertices_m) // _N_SAMPLES])
+    samples = mesh.vertices_m[:: 1 + len(mesh.vertices_m) // _N_SAMPLES]
+    return np.asarray(SurfaceDistance(coarse).of_m(samples), dtype=float)
 
 
 def _coacd(mesh: TriangleMesh, parameters: CollisionParameters) -> tuple[TriangleMesh, ...]:
