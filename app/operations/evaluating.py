@@ -31,6 +31,7 @@ from core.files import make_folder, write_whole
 from core.formats import excerpt
 from core.parameters import Parameters, flatten
 from core.progress import Reporter
+from core.scratch import remove_left
 from core.session import explained
 from core.session.record import plain, program_versions
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
@@ -183,6 +184,7 @@ def evaluate(request: EvaluationRequest, engine: Engine, folder: Path, reporter:
         WorkerError: the cluster has gone; finished trials are kept.
         Cancelled: the reporter was asked to stop; finished trials are kept.
     """
+    remove_left()
     objects = prepared_objects(request)
     with explained(folder), _held(folder):
         run = _Run(request, objects, folder)

@@ -151,7 +151,7 @@ class Series:
         """One that ended by itself has done its work, and leaves nothing in the temporary folder."""
         if code != 0:
             self.problems.append(f"exit code {code}: {said.strip().splitlines()[-1:]}")
-        left = sorted(path.name for path in self.temporary.iterdir())
+        left = sorted(path.name for path in self.temporary.iterdir() if not _is_probe(path))
         if left:
             self.problems.append(f"left in the temporary folder: {', '.join(left)}")
 
@@ -170,6 +170,11 @@ def jobs(base: Path) -> list[Job]:
             _trials_of,
         ),
     ]
+
+
+def _is_probe(path: Path) -> bool:
+    """Whether Python's `tempfile` made it to try out the folder; killed meanwhile, it leaves four bytes."""
+    return path.is_file() and path.read_bytes() == b"blat"
 
 
 def _nothing(place: Path) -> None:
@@ -199,9 +204,10 @@ def _stages_of(place: Path) -> dict[str, str]:
         record = StageRecord.load(place / name)
         if record is not None:
             found[name] = record.digest if folder_digest(place / name) == record.digest else "damaged"
-    if "scan" not in found:  # the views of an unfinished scan are in it then
-        found |= {taken.name: "taken" for taken in (place / "scan-in-progress").rglob("*.pose.txt")}
-    return found
+    views: dict[str, str] = {}
+    for folder in ("scan-in-progress", "scan"):  # views that are taken move with the scan when it ends
+        views |= {taken.name: "taken" for taken in sorted((place / folder).rglob("*.pose.txt"))}
+    return views | found
 
 
 def _trials_of(place: Path) -> dict[str, str]:

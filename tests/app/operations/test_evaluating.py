@@ -1,6 +1,7 @@
 """An evaluation is continued, not repeated; only what is decisive makes a trial again."""
 
 import os
+import tempfile
 
 import pytest
 from filelock import FileLock
@@ -47,6 +48,20 @@ def test_what_is_finished_is_not_repeated(run, tmp_path):
     assert computed == []
     assert again.trials == first.trials
     assert again.seconds >= first.seconds, "the seconds of all runs add up"
+
+
+def test_what_a_killed_one_left_in_the_temporary_folder_goes_though_nothing_is_to_be_done(
+    run, tmp_path, monkeypatch
+):
+    run()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    left = tmp_path / "poursight-left"
+    left.mkdir()
+    (left / ".held").touch()
+    os.utime(left / ".held", (0, 0))
+    computed, _ = run()
+    assert computed == []
+    assert not left.exists()
 
 
 @pytest.mark.parametrize(
