@@ -11,11 +11,12 @@ from scipy.spatial import ConvexHull
 from core.collision import CollisionModel, build_collision_model, from_parts, read_collision_model
 from core.collision.build import simplify
 from core.errors import SessionError
-from core.mesh import TriangleMesh
+from core.mesh import SurfaceDistance, TriangleMesh
 from core.mesh_file import read_mesh
 from core.mesh_topology import is_convex, join, topology
 from core.parameters.reconstruction import CollisionParameters
 from core.progress import Reporter
+from tests.core.imagination.capacity.conftest import open_box
 
 
 class Listener(Reporter):
@@ -82,6 +83,19 @@ def test_a_mesh_that_would_be_ruined_keeps_more_faces(shared_data: Path) -> None
     coarse = simplify(teapot, 2000)
     assert 2000 < len(coarse.faces) < len(teapot.faces)
     np.testing.assert_allclose(coarse.extents_m, teapot.extents_m, atol=0.002)
+
+
+def test_thin_walls_stay_where_the_average_would_let_them_go() -> None:
+    """With 2600 faces it is 0.49 mm off on average, and 7 mm where one vertex in a hundred is."""
+    box = open_box((0.2, 0.15, 0.15), 0.002)
+    fine = trimesh.Trimesh(*trimesh.remesh.subdivide_to_size(box.vertices_m, box.faces, 0.005))
+    fine.merge_vertices()
+    noise_m = np.random.default_rng(0).normal(0, 0.0003, fine.vertices.shape)
+    rough = TriangleMesh(np.array(fine.vertices) + noise_m, np.array(fine.faces, dtype=np.int64))
+    coarse = simplify(rough, 2600)
+    distances_m = SurfaceDistance(coarse).of_m(rough.vertices_m)
+    assert np.percentile(distances_m, 99) < 0.0013
+    assert len(coarse.faces) <= 4 * 2600
 
 
 @pytest.mark.parametrize("method", ["vhacd", "coacd"])
