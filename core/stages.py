@@ -95,7 +95,7 @@ STAGES: tuple[Stage, ...] = (
     ),
     Stage(
         "judgement",
-        ("collision", "containability"),
+        (SURFACE, "collision", "containability"),
         (*_PARTICLES, *_BODY, *_RECORDING, "containability", "capacity"),
     ),
     Stage(

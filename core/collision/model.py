@@ -31,6 +31,8 @@ class CollisionModel:
         surface: the true surface, simplified; its AABB decides which particle is inside (Sec. III-A).
         unseen: other surfaces that the scan allows, simplified as well; none where it saw everything.
         surface_error_m: how far the surface of a scan may lie from the true one; zero if it was given.
+        detailed: the surface as it was before it was simplified, for what holes decide; not saved. None where
+            it is not at hand.
     """
 
     method: str
@@ -38,6 +40,7 @@ class CollisionModel:
     surface: TriangleMesh
     unseen: UnseenReadings | None = None
     surface_error_m: float = 0.0
+    detailed: TriangleMesh | None = None
 
     @classmethod
     def exact(cls, surface: TriangleMesh, unseen: UnseenReadings | None = None) -> CollisionModel:
@@ -48,6 +51,11 @@ class CollisionModel:
     def is_convex(self) -> bool:
         """Whether each part is to be used as a convex hull."""
         return self.method != "exact"
+
+    @property
+    def most_detailed(self) -> TriangleMesh:
+        """The surface with all the faces that are at hand."""
+        return self.surface if self.detailed is None else self.detailed
 
     @property
     def aabb_min_m(self) -> FloatArray:

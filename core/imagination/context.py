@@ -24,16 +24,17 @@ class BodyFiles:
 
     def __init__(self) -> None:
         self._folder: ScratchFolder | None = None
-        self._objects: dict[int, tuple[CollisionModel, BodyFile]] = {}
+        self._objects: dict[int, tuple[tuple[TriangleMesh, ...], BodyFile]] = {}
         self._cups: dict[CupParameters, BodyFile] = {}
 
     def of_object(self, model: CollisionModel) -> BodyFile:
         """Return the file of an object's body."""
-        if id(model) not in self._objects:
+        parts = model.parts
+        if id(parts) not in self._objects:
             path = self._new(f"object_{len(self._objects)}")
-            # The model is kept, so that no other one takes its identity.
-            self._objects[id(model)] = model, write_body(path, model.parts, not model.is_convex)
-        return self._objects[id(model)][1]
+            # They are kept, so that no others take their identity.
+            self._objects[id(parts)] = parts, write_body(path, parts, not model.is_convex)
+        return self._objects[id(parts)][1]
 
     def of_cup(self, cup: CupParameters) -> BodyFile:
         """Return the file of a cup."""

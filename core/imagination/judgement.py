@@ -99,7 +99,7 @@ def judge_ahead(context: ImaginationContext, model: CollisionModel) -> None:
     leaky, parameters = None if model.unseen is None else model.unseen.leaky, context.parameters
     if parameters.containability.verdict == "omega" or context.runner.workers == 1:
         return
-    find_ahead(context, model.surface)
+    find_ahead(context, model)
     if leaky is None:
         return
     with suppress(StageError):  # smaller than a candy: the verdict says so if it comes to that

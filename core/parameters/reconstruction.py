@@ -100,7 +100,12 @@ class CollisionParameters(Group):
         high=0.02,
     )
     max_faces: int = quantity(
-        4_000, "Faces above which the mesh is simplified first.", unit="", source=OURS, low=100, high=200_000
+        4_000,
+        "Faces above which the mesh is simplified first; thin walls may keep four times as many.",
+        unit="",
+        source=OURS,
+        low=100,
+        high=200_000,
     )
     vhacd_voxels: int = quantity(50_000, "Voxels of V-HACD.", unit="", source=OURS, low=1_000, high=2_000_000)
     vhacd_hulls: int = quantity(32, "Most convex parts of V-HACD.", unit="", source=OURS, low=1, high=512)

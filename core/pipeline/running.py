@@ -200,11 +200,16 @@ def _drop(given: Given) -> Drop:
 
 
 def _judge(given: Given) -> Judgement:
-    return judge(given.context, given.result("collision"), given.result("containability"))
+    return judge(given.context, _with_details(given), given.result("containability"))
 
 
 def _judge_ahead(given: Given) -> None:
-    judge_ahead(given.context, given.result("collision"))
+    judge_ahead(given.context, _with_details(given))
+
+
+def _with_details(given: Given) -> CollisionModel:
+    model: CollisionModel = given.result("collision")
+    return replace(model, detailed=given.surface.mesh)
 
 
 def _tilt(given: Given) -> Retention | None:

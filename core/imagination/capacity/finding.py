@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
+from core.collision import CollisionModel
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.context import ImaginationContext
 from core.imagination.particle_shape import particle_volume_m3
@@ -14,7 +15,10 @@ from core.workers import Task
 
 STAGE = "capacity"
 HALF = 0.5
-"""Candies half as large are asked about; a scan has gaps of its own that smaller ones would pass."""
+"""Candies half as large are asked about; a scan has gaps of its own that smaller ones would pass.
+
+It is asked of the surface before it was simplified, where that is at hand: pinholes grow with fewer faces.
+"""
 _SMALLEST_CANDIES = 1.0
 """A hollow counts when its bulk holds so many."""
 _USUAL_FRACTION = 0.6
@@ -39,10 +43,10 @@ def find_beside(
         take(made)
 
 
-def find_ahead(context: ImaginationContext, surface: TriangleMesh) -> None:
-    """Let idle processors find what the capacity of a surface needs, whatever stays of a drop."""
+def find_ahead(context: ImaginationContext, model: CollisionModel) -> None:
+    """Let idle processors find what the capacity of an object needs, whatever stays of a drop."""
     parameters = context.parameters
-    for scale in (1.0, HALF):
+    for surface, scale in ((model.surface, 1.0), (model.most_detailed, HALF)):
         task = _task(surface, scale * parameters.particle.diameter_m, parameters)
         context.spare.append((task, partial(context.ahead.keep, surface, task.arguments[1:])))
 

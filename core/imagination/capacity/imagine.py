@@ -101,7 +101,7 @@ def _filled(context: ImaginationContext, model: CollisionModel, drop: Drop, basi
     if plan.stand_in.scale > 1:
         plan = _without_plugs(plan, basin, basin_of(context, surface, plan.stand_in.particle.diameter_m))
     for_half: list[Basin] = []
-    find_beside(context, surface, HALF * parameters.particle.diameter_m, for_half.append)
+    find_beside(context, model.most_detailed, HALF * parameters.particle.diameter_m, for_half.append)
     fillings = _fill(context, target, plan)
     below = _below_an_arch(context, model, drop, plan, fillings)
     if below is not None:

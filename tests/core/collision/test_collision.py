@@ -9,7 +9,7 @@ from pytest import CaptureFixture
 from scipy.spatial import ConvexHull
 
 from core.collision import CollisionModel, build_collision_model, from_parts, read_collision_model
-from core.collision.build import simplify
+from core.collision.simplification import simplify
 from core.errors import SessionError
 from core.mesh import SurfaceDistance, TriangleMesh
 from core.mesh_file import read_mesh

@@ -103,6 +103,8 @@ def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few)
     whole = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003))
     assert fill(slit, candies, few, RunHere()).too_small_m == candies.particle.diameter_m / 2
     assert fill(whole, candies, few, RunHere()).too_small_m is None
+    only_when_simplified = replace(slit, detailed=whole.surface)
+    assert fill(only_when_simplified, candies, few, RunHere()).too_small_m is None
 
 
 @pytest.mark.system
