@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Qt, QTimer, Signal
 
 from app.gui.remedies import worded
 from core.errors import PoursightError, StageError
@@ -27,6 +28,9 @@ class _Call:
 class Background(QObject):
     """Runs calls one by one in a thread; only the newest of each name is reported, so a page never goes back.
 
+    One result is shown in a turn of the event loop: Qt would deliver all that came meanwhile in one, and what
+    a user does would wait for them all.
+
     Signals: `failed` with the sentence of a call that failed and has no handler of its own.
     """
 
@@ -40,7 +44,10 @@ class Background(QObject):
         # Python's own: a `QRunnable` may be destroyed here while Qt's thread is still inside it.
         self._thread = ThreadPoolExecutor(1)
         self._newest: dict[str, _Call] = {}
-        self._ended.connect(self._end, Qt.ConnectionType.QueuedConnection)
+        self._ends: deque[tuple[str, _Call, Any, PoursightError | None]] = deque()
+        self._turn = QTimer(self, singleShot=True, interval=0)
+        self._turn.timeout.connect(self._show_next)
+        self._ended.connect(self._await_turn, Qt.ConnectionType.QueuedConnection)
 
     @property
     def is_idle(self) -> bool:
@@ -78,6 +85,16 @@ class Background(QObject):
             error = StageError(f"Internal error ({type(fault).__name__}: {fault}).")
         self._ended.emit(name, call, result, error)
 
+    def _await_turn(self, name: str, call: _Call, result: Any, error: PoursightError | None) -> None:
+        self._ends.append((name, call, result, error))
+        self._turn.start()
+
+    def _show_next(self) -> None:
+        end = self._ends.popleft()
+        if self._ends:
+            self._turn.start()
+        self._end(*end)
+
     def _end(self, name: str, call: _Call, result: Any, error: PoursightError | None) -> None:
         if self._newest.get(name) is not call:
             return
@@ -92,5 +109,7 @@ class Background(QObject):
     def forget(self) -> None:
         """Drop what is queued, and wait for what runs."""
         self._newest.clear()
+        self._turn.stop()
+        self._ends.clear()
         self._thread.shutdown(cancel_futures=True)
         self._thread = ThreadPoolExecutor(1)

@@ -13,9 +13,6 @@ import pytest
 from app.gui.headless_check import Heartbeat
 from tests.patience import HANG_S
 
-LONGEST_STALL_MS = 100
-MOST_TRIES = 3
-"""A busy machine may lengthen a stall also where nothing waits for a processor: threads wait for others."""
 STALL_S = 0.3
 
 
@@ -66,17 +63,14 @@ def test_what_waits_for_a_processor_is_not_its_own_doing(heartbeat, qtbot):
 
 
 @pytest.mark.system
-@pytest.mark.gl  # not for drawing: it runs alone then, so that the stall is the program's own
-def test_a_newcomer_pours_into_the_mug_the_window_never_stalls_and_nothing_is_left(tmp_path, capsys):
-    stalls_ms = []
-    while len(stalls_ms) < MOST_TRIES and min(stalls_ms, default=LONGEST_STALL_MS) >= LONGEST_STALL_MS:
-        printed = _headless_check(tmp_path)
-        with capsys.disabled():
-            print(f"\n{printed}")
-        assert "0 of 60 candies were spilled" in printed
-        assert " 6 clicks" in printed, "'Scan the mug' and five more"
-        stalls_ms.append(float(printed.split(" ms without what it waited")[0].split()[-1]))
-    assert min(stalls_ms) < LONGEST_STALL_MS
+@pytest.mark.gl  # not for drawing: it runs alone then, so that the stall it prints is the program's own
+def test_a_newcomer_pours_into_the_mug_and_nothing_is_left(tmp_path, capsys):
+    """How long the window stalls depends on the machine: `make window-tour` holds it against the goal."""
+    printed = _headless_check(tmp_path)
+    with capsys.disabled():
+        print(f"\n{printed}")
+    assert "0 of 60 candies were spilled" in printed
+    assert " 6 clicks" in printed, "'Scan the mug' and five more"
     left = [
         process
         for process in psutil.process_iter(["environ"])
