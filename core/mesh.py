@@ -66,7 +66,7 @@ class TriangleMesh:
         a, b, c = (self.vertices_m[self.faces[:, k]] for k in range(3))
         volumes = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6
         middle: FloatArray = (self.aabb_min_m + self.aabb_max_m) / 2
-        if abs(volumes.sum()) < 1e-6 * np.prod(self.extents_m):
+        if abs(volumes.sum()) <= 1e-6 * np.prod(self.extents_m):
             return middle
         center: FloatArray = (volumes[:, None] * (a + b + c) / 4).sum(axis=0) / volumes.sum()
         is_inside = (center >= self.aabb_min_m).all() and (center <= self.aabb_max_m).all()

@@ -39,8 +39,8 @@ _PLY_HEADER = (
 def read_mesh(path: Path, reporter: Reporter) -> TriangleMesh:
     """Read all parts of an OBJ, PLY, STL, OFF or GLB file as one mesh, in metres and z up.
 
-    Equal vertices are joined; faces without area and unused vertices are dropped. Non-manifold edges and
-    faces wound opposite to their neighbours are reported as warnings: rays and candies meet a surface,
+    Equal vertices are joined; faces without area and unused vertices are dropped. Open and non-manifold edges
+    and faces wound opposite to their neighbours are reported as warnings: rays and candies meet a surface,
     whether or not it encloses a volume.
 
     Raises:
@@ -261,6 +261,11 @@ def _check_topology(path: Path, mesh: TriangleMesh, reporter: Reporter) -> None:
         reporter.warn(
             f"{path} has {facts.n_crowded} non-manifold edges, shared by more than two faces: it is taken as "
             "a surface, and its volume is unknown."
+        )
+    elif facts.n_open:
+        reporter.warn(
+            f"{path} is not closed ({facts.n_open} open edges): it is taken as a surface, whose holes "
+            "candies may fall through, and its volume is unknown."
         )
     if not facts.is_consistent:
         reporter.warn(f"{path} has neighbouring faces wound to opposite sides; its volume is unknown.")

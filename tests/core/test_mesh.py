@@ -29,3 +29,9 @@ def test_what_moved_sideways_lies_outside_in_front_and_inside_behind():
     side = np.abs(mesh.vertices_m[:, 0]) > 0.045
     assert (np.sign(difference_m[side]) == np.sign(mesh.vertices_m[side, 0])).all()
     assert np.abs(difference_m).max() == pytest.approx(0.004, abs=1e-4)
+
+
+def test_a_flat_sheet_has_its_centre_of_mass_in_its_middle():
+    sheet = TriangleMesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
+    with np.errstate(all="raise"):
+        np.testing.assert_allclose(sheet.center_of_mass_m, [0.5, 0.5, 0])

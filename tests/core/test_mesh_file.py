@@ -182,6 +182,14 @@ def test_one_non_manifold_edge_of_many_is_a_warning(tmp_path: Path) -> None:
     assert "fin.ply has 1 non-manifold" in listener.sentences[0]
 
 
+def test_a_mesh_that_is_not_closed_is_a_surface_with_a_warning(tmp_path: Path) -> None:
+    write_mesh(tmp_path / "torn.ply", TriangleMesh(box().vertices_m, box().faces[1:]))
+    listener = Listener()
+    read_mesh(tmp_path / "torn.ply", listener)
+    assert len(listener.sentences) == 1
+    assert "torn.ply is not closed (3 open edges): it is taken as a surface" in listener.sentences[0]
+
+
 def test_a_face_against_its_neighbours_is_a_warning(tmp_path: Path) -> None:
     faces = box().faces.copy()
     faces[0] = faces[0, ::-1]
