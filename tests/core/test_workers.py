@@ -13,6 +13,7 @@ from core.errors import Cancelled, InputError, WorkerError
 from core.progress import Reporter
 from core.workers import Task, WorkerPool, report_fraction
 from tests.awake import within
+from tests.patience import wait_until
 
 
 def square(x):
@@ -101,10 +102,7 @@ def test_cancelling_takes_less_than_two_seconds_even_when_a_task_does_not_listen
 def test_closing_ends_the_processes():
     with WorkerPool(2) as workers:
         numbers = set(workers.run([Task(process_number, ()) for _ in range(6)], "numbers", Reporter()))
-    deadline = time.perf_counter() + 5
-    while any(psutil.pid_exists(number) for number in numbers) and time.perf_counter() < deadline:
-        time.sleep(0.05)
-    assert not [number for number in numbers if psutil.pid_exists(number)]
+    wait_until(lambda: not any(psutil.pid_exists(number) for number in numbers))
 
 
 @pytest.mark.parametrize("seconds", [0.0, 60.0], ids=["idle", "busy"])
@@ -186,10 +184,7 @@ def test_workers_die_with_a_parent_that_is_killed(tmp_path):
     ) as parent:
         worker = int(parent.stdout.readline())
         parent.kill()
-    deadline = time.perf_counter() + 5
-    while psutil.pid_exists(worker) and time.perf_counter() < deadline:
-        time.sleep(0.05)
-    assert not psutil.pid_exists(worker)
+    wait_until(lambda: not psutil.pid_exists(worker))
 
 
 def print_from_c():

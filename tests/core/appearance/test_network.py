@@ -5,6 +5,7 @@ import pytest
 
 from core.appearance.network import LAYERS, MAP_CELLS, WEIGHTS_FILE, Network, shipped_network
 from core.errors import InputError
+from tests.awake import in_time
 from tests.core.appearance.looks import drawn_network
 
 CHECK_FILE = WEIGHTS_FILE.with_name("check.npz")
@@ -58,7 +59,7 @@ def test_the_weights_are_small_and_a_view_costs_little():
     began_s = process_time()
     for seed in range(5):
         network.look(crop(seed))
-    assert process_time() - began_s < 5 * 0.5, "processor time, so that a busy machine does not matter"
+    in_time(process_time() - began_s, 5 * 0.5, "processor time of five views")
 
 
 def test_what_is_no_network_is_refused_in_a_sentence(tmp_path):

@@ -25,6 +25,7 @@ from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.store import ScanStore, read_views
 from hardware.scanning.views import ViewRecord, ViewState
 from hardware.simulation.world import World
+from tests.awake import in_time
 from tests.hardware.scanning.faulty import (
     ORIGIN,
     SEED,
@@ -206,7 +207,7 @@ def test_stopped_in_mid_move_the_arm_stands_and_the_next_run_continues(
         began_s = time.monotonic()
         with pytest.raises(Cancelled if how == "cancel" else KeyboardInterrupt):
             procedure.take(planned(slow))
-        assert time.monotonic() - began_s < 2
+        in_time(time.monotonic() - began_s, 2)
         # As soon as it says so, the arm stands, on its way.
         state = arm.state()
         assert not state.joint_speeds_rad_s.any()

@@ -7,6 +7,7 @@ import pytest
 from PySide6.QtCore import QPointF
 
 from app.gui.views.depth_image import DepthPanel, ImagePanel, depth_colors, range_of, thinned
+from tests.awake import in_time
 
 
 @pytest.fixture
@@ -77,7 +78,7 @@ def test_converting_is_quick(panel):
         begin = time.perf_counter()
         panel.set_depth(depth)
         times.append(time.perf_counter() - begin)
-    assert min(times) < 0.010
+    in_time(min(times), 0.010)
 
 
 def test_colours_are_shown_as_they_are(qtbot):

@@ -28,11 +28,13 @@ from hardware.simulation.ur_controller.identity import (
 )
 from hardware.simulation.ur_controller.process import ControllerProcess
 from hardware.simulation.ur_controller.rtde_protocol import OUTPUT_TYPES, Kind, frame
-from tests.awake import AwakeClock
+from tests.awake import AwakeClock, in_time
 from tests.patience import HANG_S, wait_until
 
 ROOT = Path(__file__).resolve().parents[4]
 LIMIT_S = 5.0
+SLOW_TO_LOAD = ("PySide6", "pybullet", "open3d", "llvmlite", "mujoco", "rtde_")
+"""Parts of the paths of libraries; any of them would multiply the time until a controller is there."""
 HOLDER = """
 import sys, time
 from hardware.simulation.ur_controller.process import ControllerProcess
@@ -61,10 +63,11 @@ def wait_until_gone(address: str) -> float:
     return time.monotonic() - begin_s
 
 
-def test_it_starts_quickly_and_ends_with_its_context() -> None:
-    begin_s = time.monotonic()
+def test_it_starts_light_and_ends_with_its_context() -> None:
     with ControllerProcess(joints_rad=[0.1] * 6) as controller:
-        assert time.monotonic() - begin_s < 2.0
+        loaded = " ".join(one.path for one in psutil.Process(controller.pid).memory_maps())
+        assert "numpy" in loaded
+        assert [name for name in SLOW_TO_LOAD if name in loaded] == []
         assert controller.address.startswith("127.") and controller.address != "127.0.0.1"
         assert all(listens(controller.address, port) for port in (SCRIPT_PORT, RTDE_PORT, CONTROL_PORT))
         assert state(controller)["joints_rad"] == [0.1] * 6
@@ -116,14 +119,19 @@ def controller() -> Any:
         yield process
 
 
-def test_the_clock_runs_as_fast_as_told_without_drifting() -> None:
-    for speed_up in (1, 4):
-        with ControllerProcess("UR5", "3.15", speed_up=speed_up) as controller, AwakeClock() as clock:
-            begin_s, first_s = clock.now_s(), state(controller)["time_s"]
-            time.sleep(1.0)
-            ran_s = state(controller)["time_s"] - first_s
-            # A busy machine wakes it up late by a fixed time; a drift would grow with the time.
-            assert ran_s / speed_up == pytest.approx(clock.now_s() - begin_s, abs=0.2)
+def seconds_ahead(controller: ControllerProcess, speed_up: int) -> float:
+    """By how much the controller's clock gains on ours in a second."""
+    begin_s, first_s = time.monotonic(), state(controller)["time_s"]
+    time.sleep(1.0)
+    ran_s = (state(controller)["time_s"] - first_s) / speed_up
+    return float(ran_s - (time.monotonic() - begin_s))
+
+
+@pytest.mark.parametrize("speed_up", [1, 4])
+def test_the_clock_runs_as_fast_as_told_without_drifting(speed_up) -> None:
+    # A busy machine wakes it up late, then it catches up; a drift would be there in every second.
+    with ControllerProcess("UR5", "3.15", speed_up=speed_up) as controller:
+        wait_until(lambda: abs(seconds_ahead(controller, speed_up)) < 0.05)
 
 
 def test_after_being_suspended_it_goes_on_without_running_after_the_clock_for_long() -> None:
@@ -173,7 +181,9 @@ def test_latency_holds_in_both_directions_and_keeps_the_order() -> None:
         words = [lines.readline().split(":")[0] for _ in range(30)]
         connection.close()
         assert words == ["Robotmode", "Safetymode", "Program running"] * 10
-        assert 0.1 < time.monotonic() - begin_s < 1
+        took_s = time.monotonic() - begin_s
+        assert took_s > 0.1
+        in_time(took_s, 1, "thirty answers")
 
 
 def test_kill_and_a_schedule() -> None:

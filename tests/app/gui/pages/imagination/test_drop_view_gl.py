@@ -14,6 +14,7 @@ from app.gui.pages.imagination.view import DropReplay
 from core.imagination.recording import Recording
 from core.imagination.results import Drop
 from core.pipeline.session_view import SessionView
+from tests.awake import in_time
 
 pytestmark = pytest.mark.gl
 N = 300
@@ -61,7 +62,7 @@ def test_three_hundred_candies_are_moved_in_less_than_five_milliseconds(replay):
         replay._show_time(float(time_s))
         spent_s.append(time.perf_counter() - began_s)
     print(f"per frame {1000 * statistics.median(spent_s):.2f} ms, worst {1000 * max(spent_s):.2f} ms")
-    assert statistics.median(spent_s) < 0.005
+    in_time(statistics.median(spent_s), 0.005)
 
 
 def test_kept_and_lost_candies_are_seen_at_any_time(replay):

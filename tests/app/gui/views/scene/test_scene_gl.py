@@ -26,6 +26,7 @@ from app.gui.views.scene.candies import CANDY_COLORS, LOST_COLOR
 from app.gui.views.scene.occlusion import surface_points_m
 from core.geometry import look_at
 from core.motion.arm_models import UR5
+from tests.awake import in_time
 from tests.benchmarks.scene_speed import frame_seconds, mug, replay_scene
 
 pytestmark = pytest.mark.gl
@@ -299,7 +300,7 @@ def test_a_large_mesh_does_not_stall_the_window(qtbot, scene):
         start = time.perf_counter()
         scene.set_prepared_mesh("object", prepared)
         seconds.append(time.perf_counter() - start)
-    assert statistics.median(seconds) < 0.06
+    in_time(statistics.median(seconds), 0.06)
 
 
 def test_a_replay_runs_at_twenty_frames_a_second(qtbot):
