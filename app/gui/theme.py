@@ -259,8 +259,6 @@ def style_sheet(theme: Theme) -> str:
     QFrame#job_bar {{ background: {t.surface}; border: none; border-top: 1px solid {t.line}; }}
     QFrame#message_bar {{ background: {t.raised}; border: none; border-bottom: 1px solid {t.line}; }}
     QFrame#log_drawer QPlainTextEdit {{ border: none; border-top: 1px solid {t.line}; }}
-    QProgressBar {{ background: {t.raised}; border: none; border-radius: 3px; }}
-    QProgressBar::chunk {{ background: {t.accent}; border-radius: 3px; }}
     QLabel[role="title"] {{ font-size: 13pt; font-weight: 600; }}
     QLabel[role="heading"] {{ font-weight: 600; }}
     QLabel[role="verdict"] {{ font-size: 12pt; font-weight: 600; }}

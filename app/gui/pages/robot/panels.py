@@ -7,13 +7,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QCoreApplication, QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QCheckBox, QProgressBar, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QPushButton, QVBoxLayout, QWidget
 
 from app.gui.pages.fact_grid import Fact, FactGrid
 from app.gui.pages.robot.motion import ShownMotion, move_text
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import say, text_label
 from app.gui.views.painting import tabular
+from app.gui.views.progress_line import ProgressLine
 from app.jobs.arm_events import MoveProgress, PlannedPour
 from core.motion.pour.plan import Segment
 from core.report.sentences import duration_text
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
 
 _MM = 1000.0
-_BAR_STEPS = 1000
 _SLOWER_S = 0.05
 """A pour rotation that is slower than imagined by less is not worth a word."""
 
@@ -233,11 +233,9 @@ class LivePanel(Panel):
         self._move = text_label("live_move")
         self._move.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._move.setMinimumHeight(2 * self._move.fontMetrics().height())  # nothing below jumps
-        self._bar = QProgressBar()
+        self._bar = ProgressLine()
         self._bar.setObjectName("live_bar")
         self._bar.setAccessibleName(self.tr("Progress of the motion"))
-        self._bar.setRange(0, _BAR_STEPS)
-        self._bar.setTextVisible(False)
         self._left = text_label("live_left", "heading")
         self._left.setFont(tabular(self.font()))
         self._pivot = text_label("live_pivot", "muted")
@@ -255,14 +253,14 @@ class LivePanel(Panel):
         """Nothing has moved yet."""
         self.heading.setText(self.tr("Backing off") if is_return else self.tr("Pouring"))
         say(self._move, self.tr("The whole plan is checked once more before anything moves."))
-        self._bar.setValue(0)
+        self._bar.set_fraction(0.0)
         say(self._left, "")
         say(self._pivot, "")
 
     def follow(self, progress: MoveProgress, motion: ShownMotion) -> None:
         """Show how far it is."""
         say(self._move, move_text(Segment(progress.name)))
-        self._bar.setValue(round(_BAR_STEPS * progress.done_s / motion.duration_s))
+        self._bar.set_fraction(progress.done_s / motion.duration_s)
         said = self.tr("Move {k} of {n}, about {left} left").format(
             k=progress.index + 1, n=len(motion.moves), left=duration_text(progress.left_s)
         )
