@@ -9,7 +9,7 @@ import signal
 import sys
 from contextlib import suppress
 
-from PySide6.QtCore import QCoreApplication, Qt, QTimer
+from PySide6.QtCore import QCoreApplication, QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.gui.desk.memory import Memory
@@ -41,7 +41,6 @@ def make_application() -> QApplication:
             "whole job without one."
         )
     _give_back_large_memory()
-    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     QCoreApplication.setOrganizationName("Poursight")
     QCoreApplication.setApplicationName("Poursight")
     return QApplication(sys.argv[:1])

@@ -10,12 +10,12 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
-from PySide6.QtCore import QCoreApplication, QEventLoop, Qt
-from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
 from app.gui.views.scene import ColorScale, Scene3D, prepare_mesh, revolved_mesh
 from app.gui.views.scene.shapes import Shape
+from app.gui.views.scene.view import SceneView
 from core.geometry import FloatArray, make_pose
 from core.imagination.rendering.shapes import candy_mesh
 from core.motion.arm_models import UR5
@@ -30,7 +30,6 @@ _JOINTS_RAD = np.array([0.3, -1.6, 1.6, -1.5, -1.57, 0.0])
 
 def main() -> None:
     """Measure what pages show and print it."""
-    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     application = QApplication([])
     for width, height in SIZES:
         for n_faces in (10_000, 200_000):
@@ -91,11 +90,11 @@ def frame_seconds(scene: Scene3D, n_frames: int) -> list[float]:
 def draw(scene: Scene3D, positions_m: FloatArray) -> None:
     """Show candies there and wait for the picture."""
     waiting = QEventLoop()
-    view = scene.findChild(QOpenGLWidget)
-    view.frameSwapped.connect(waiting.quit)
+    view = scene.findChild(SceneView)
+    view.painted.connect(waiting.quit)
     scene.set_candy_poses("candies", positions_m, _TURNS)
     waiting.exec()
-    view.frameSwapped.disconnect(waiting.quit)
+    view.painted.disconnect(waiting.quit)
 
 
 def falling() -> Iterator[FloatArray]:

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import linecache
-from collections.abc import Iterator
 from functools import partial
 from importlib import import_module
 from pathlib import Path
 
 from PySide6.QtCore import QThread, QTimer, Signal
-from PySide6.QtGui import QCloseEvent, QGuiApplication, QKeyEvent
-from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtGui import QCloseEvent, QKeyEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
 
@@ -39,8 +37,8 @@ STARTED_BY_NEXT = ("scan", "reconstruction", "imagination", "robot")
 """Pages whose job starts with the click on "Next"."""
 ARM_PAGES = ("scan", "robot")
 """Pages whose work moves the arm: with a real one "Next" only shows them."""
-_OPENGL = "app.gui.views.scene.view"
-"""Where pyqtgraph and PyOpenGL come in; the scene itself imports it when the first one is made."""
+_OPENGL = "app.gui.views.scene.renderer"
+"""Where pyqtgraph and PyOpenGL come in; a scene itself imports it when the first one is made."""
 
 
 class Preload(QThread):
@@ -107,16 +105,10 @@ class MainWindow(QMainWindow):
             self.page(missing[0])
             QTimer.singleShot(BREATH_MS, self, self._make_pages)
             return
-        from app.gui.views.scene.scene3d import warm_up
+        from app.gui.views.scene.warm_up import warm_up
 
         self.desk.prepare()  # not before: it would compete with the pages' imports for processors
-        self._warm_up(warm_up(self))
-
-    def _warm_up(self, steps: Iterator[None]) -> None:
-        for _ in steps:
-            QTimer.singleShot(BREATH_MS, self, partial(self._warm_up, steps))
-            return
-        self.ready.emit()
+        warm_up(self.ready.emit)
 
     @property
     def shown(self) -> str:
@@ -241,9 +233,6 @@ class MainWindow(QMainWindow):
         column.addWidget(self.job_bar)
         whole = QWidget()
         whole.setLayout(column)
-        # Qt recreates the native window for its first OpenGL widget: let an invisible one do that now.
-        if QGuiApplication.platformName() != "offscreen":
-            QOpenGLWidget(whole).setGeometry(0, 0, 1, 1)
         self.setCentralWidget(whole)
 
     def _connect(self) -> None:

@@ -10,14 +10,11 @@ import pytest
 pytest.importorskip("PySide6")
 pytest.importorskip("pytestqt")
 
-from PySide6.QtCore import QCoreApplication, Qt
+from PySide6.QtCore import QCoreApplication
 from pytestqt.qtbot import QtBot
 
 from tests.patience import HANG_S
 
-QCoreApplication.setAttribute(
-    Qt.ApplicationAttribute.AA_ShareOpenGLContexts
-)  # before there is a QApplication
 QCoreApplication.setOrganizationName("Poursight")
 QCoreApplication.setApplicationName("Poursight")
 

@@ -40,6 +40,9 @@ class BlankCanvas(QLabel):
     def set_theme(self, theme: Theme) -> None:
         """The sentence follows the palette by itself."""
 
+    def redraw(self) -> None:
+        """There is no picture to change."""
+
     def grab_image(self) -> QImage:
         """The sentence."""
         return self.grab().toImage()
@@ -52,7 +55,7 @@ def make_canvas(theme: Theme, parent: QWidget) -> Canvas:
     """Return a surface to draw on, as good as the screen allows."""
     if not has_opengl():
         return BlankCanvas(parent)
-    from app.gui.views.scene.view import SceneView  # needs OpenGL's library, and takes half a second
+    from app.gui.views.scene.view import SceneView  # draws with OpenGL's library, and takes half a second
 
     return SceneView(theme, parent)
 

@@ -13,19 +13,25 @@ from core.geometry import AnyArray
 
 
 class GroundItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no types
-    """A ground, seen from above only."""
+    """A ground, seen from above only.
+
+    Attributes:
+        part: what is drawn.
+    """
 
     def __init__(self, part: GroundPart) -> None:
         super().__init__()
-        self._part = part
+        self.part = part
         self._colors: AnyArray = np.ones((3, 4), dtype=np.float32)
         self._texture: int | None = None
         self._is_dirty = True
         self.setGLOptions(FRONTS)
 
-    def initializeGL(self) -> None:
-        """Forget the texture of an earlier context."""
-        self._texture, self._is_dirty = None, True
+    def release(self) -> None:
+        """Give the texture back."""
+        if self._texture is not None:
+            GL.glDeleteTextures([self._texture])
+            self._texture = None
 
     def take_vertices(self) -> None:
         """Draw the shadows as they are now."""
@@ -38,7 +44,7 @@ class GroundItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no type
     def paint(self) -> None:
         """Draw it."""
         self.setupGLState()
-        part, program = self._part, self.view().ground_program
+        part, program = self.part, self.view().ground_program
         GL.glUseProgram(program.id)
         for name, matrix in (("eye", self.modelViewMatrix()), ("projection", self.projectionMatrix())):
             GL.glUniformMatrix4fv(program.at[name], 1, False, np.array(matrix.data(), dtype=np.float32))
@@ -70,7 +76,7 @@ class GroundItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no type
         GL.glBindTexture(GL.GL_TEXTURE_2D, self._texture)
         if not self._is_dirty:
             return
-        shadow = np.ascontiguousarray(self._part.shadow)
+        shadow = np.ascontiguousarray(self.part.shadow)
         rows, columns = shadow.shape  # a multiple of four bytes, as OpenGL expects
         GL.glTexImage2D(
             GL.GL_TEXTURE_2D,

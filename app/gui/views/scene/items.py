@@ -22,17 +22,21 @@ _RANK_OPAQUE, _RANK_GROUND, _RANK_LINES, _RANK_SEE_THROUGH, _RANK_ON_TOP = 0.0, 
 
 
 class LineItem(GLLinePlotItem):  # type: ignore[misc]  # pyqtgraph has no types
-    """Segments."""
+    """Segments.
+
+    Attributes:
+        part: what is drawn.
+    """
 
     def __init__(self, part: Part, pixel_ratio: float) -> None:
         super().__init__(width=part.size_px * pixel_ratio, mode="lines", antialias=True)
-        self._part = part
+        self.part = part
         self.setGLOptions(ON_TOP if part.is_on_top else LINES)
         self.take_vertices()
 
     def take_vertices(self) -> None:
         """Draw the part's vertices as they are now."""
-        self.setData(pos=self._of_ends(self._part.vertices_m))
+        self.setData(pos=self._of_ends(self.part.vertices_m))
 
     def take_colors(self, colors: AnyArray) -> None:
         """Draw in a colour (4,) or in one for each vertex (N, 4)."""
@@ -40,21 +44,25 @@ class LineItem(GLLinePlotItem):  # type: ignore[misc]  # pyqtgraph has no types
 
     def _of_ends(self, of_vertices: AnyArray) -> AnyArray:
         """What the vertices have (N, ...), for the two ends of each segment (2 S, ...)."""
-        return of_vertices if self._part.indices is None else of_vertices[self._part.indices]
+        return of_vertices if self.part.indices is None else of_vertices[self.part.indices]
 
 
 class PointItem(GLScatterPlotItem):  # type: ignore[misc]  # pyqtgraph has no types
-    """Points."""
+    """Points.
+
+    Attributes:
+        part: what is drawn.
+    """
 
     def __init__(self, part: Part, pixel_ratio: float) -> None:
         super().__init__(size=part.size_px * pixel_ratio, pxMode=True)
-        self._part = part
+        self.part = part
         self.setGLOptions(ON_TOP if part.is_on_top else LINES)
         self.take_vertices()
 
     def take_vertices(self) -> None:
         """Draw the part's vertices as they are now."""
-        self.setData(pos=self._part.vertices_m)
+        self.setData(pos=self.part.vertices_m)
 
     def take_colors(self, colors: AnyArray) -> None:
         """Draw in a colour (4,) or in one for each vertex (N, 4)."""
@@ -77,7 +85,8 @@ class DrawnLayer:
     """Items of a layer.
 
     Attributes:
-        layer: what is drawn.
+        layer: what is drawn, as the view had it when it last asked for a picture.
+        is_see_through: whether what is behind it is seen.
         n_triangles: how many.
     """
 
@@ -101,14 +110,16 @@ class DrawnLayer:
         for item, part in zip(self._items, self.layer.parts, strict=True):
             item.take_colors(part.paint.colors(theme))
 
-    def follow(self) -> None:
+    def follow(self, layer: Layer) -> None:
         """Bring the items to where and how the layer is now."""
+        self.layer = layer
         for item in self.items:
-            item.setVisible(self.layer.is_visible)
-        if not self.layer.is_visible:
+            item.setVisible(layer.is_visible)
+        if not layer.is_visible:
             return
-        for k, (item, part) in enumerate(zip(self._items, self.layer.parts, strict=True)):
-            item.setTransform(Transform3D(self.layer.T_world_layer @ part.T_layer_part))
+        for k, (item, part) in enumerate(zip(self._items, layer.parts, strict=True)):
+            item.part = part
+            item.setTransform(Transform3D(layer.T_world_layer @ part.T_layer_part))
             if self._revisions[k] != part.revision:
                 item.take_vertices()
                 self._revisions[k] = part.revision
@@ -121,6 +132,13 @@ class DrawnLayer:
             item.setDepthValue(_RANK_ON_TOP if part.is_on_top else order.get(part.kind, surface))
         if self._depth is not None:
             self._depth.setDepthValue(_RANK_SEE_THROUGH + rank)
+
+    def release(self) -> None:
+        """Give back what the items keep in the context."""
+        for item in self.items:
+            item._setView(None)
+            if isinstance(item, GroundItem):
+                item.release()
 
     def distance_m(self, eye_m: FloatArray) -> float:
         """How far the layer's middle is from the eye."""

@@ -219,7 +219,7 @@ class Navigator(QObject):
         if name in self._boxes:
             box = self._boxes[name]
             box.drag(handle, self._ray(at).transformed(invert_pose(box.layer.T_world_layer)))
-            self._canvas.update()
+            self._canvas.redraw()
 
     def _drop_handle(self) -> None:
         dragged, self._dragged = self._dragged, None

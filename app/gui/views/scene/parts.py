@@ -226,16 +226,20 @@ class Part:
     is_on_top: bool = False
     T_layer_part: FloatArray = field(default_factory=lambda: np.eye(4))
     revision: int = 0
-    _outline: tuple[int, FloatArray] | None = None
+    _outlines: dict[int, FloatArray] = field(default_factory=dict)
+    """The newest one by its revision, shared with copies of this part."""
 
     def outline_m(self) -> FloatArray:
         """Vertices (K, 3), so many that the others lie within them but for little; absent ones left out."""
-        if self._outline is None or self._outline[0] != self.revision:
+        outline = self._outlines.get(self.revision)
+        if outline is None:
             placed = self.vertices_m[np.isfinite(self.vertices_m).all(axis=1)].astype(float)
             if self.poses is not None:
                 placed = _around(self.poses[self.poses[:, 3:].any(axis=1), :3], placed)
-            self._outline = self.revision, _thinned(placed)
-        return self._outline[1]
+            outline = _thinned(placed)
+            self._outlines.clear()
+            self._outlines[self.revision] = outline
+        return outline
 
     @property
     def n_triangles(self) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -28,11 +28,9 @@ from app.gui.views.scene.layers import (
 from app.gui.views.scene.navigation import Navigator
 from app.gui.views.scene.overlay import ScaleLegend, ViewButtons
 from app.gui.views.scene.parts import ColorScale, Layer, PreparedMesh, prepare_mesh
-from app.gui.views.scene.shapes import Shape, box_mesh
+from app.gui.views.scene.shapes import Shape
 from core.geometry import BoolArray, FloatArray
 from core.motion.arm_models import ArmModel, Capsule
-
-_WARM_UP_PX = 32
 
 
 class Scene3D(QWidget):
@@ -126,7 +124,7 @@ class Scene3D(QWidget):
     def set_pose(self, name: str, T_world: FloatArray) -> None:
         """Move a layer to a pose (4, 4); cheap."""
         self._layers[name].T_world_layer = np.asarray(T_world, dtype=float)
-        self._canvas.update()
+        self._canvas.redraw()
 
     def set_arm(
         self,
@@ -155,7 +153,7 @@ class Scene3D(QWidget):
     def set_joints(self, name: str, joints_rad: npt.ArrayLike) -> None:
         """Bend an arm to joint angles (6,); cheap."""
         self._arms[name].move(joints_rad)
-        self._canvas.update()
+        self._canvas.redraw()
 
     def set_frusta(self, name: str, frusta: Sequence[Frustum]) -> None:
         """Show camera views; `picked` has the index of the one that is clicked."""
@@ -183,7 +181,7 @@ class Scene3D(QWidget):
         candies.move(positions_m, quaternions)
         for ground in self._grounds.values():
             ground.shade_candies(np.asarray(positions_m), candies.radius_m)
-        self._canvas.update()
+        self._canvas.redraw()
 
     def set_ground(
         self,
@@ -245,7 +243,7 @@ class Scene3D(QWidget):
     def set_visible(self, name: str, is_visible: bool) -> None:
         """Show or hide a layer."""
         self._layers[name].is_visible = is_visible
-        self._canvas.update()
+        self._canvas.redraw()
 
     def remove(self, name: str) -> None:
         """Take a layer away; nothing happens if there is none of that name."""
@@ -253,7 +251,7 @@ class Scene3D(QWidget):
             things.pop(name, None)
         self._canvas.drop(name)
         self._show_hint()
-        self._canvas.update()
+        self._canvas.redraw()
 
     def clear(self) -> None:
         """Take all layers and the scale away; the next ones are brought into view."""
@@ -335,7 +333,7 @@ class Scene3D(QWidget):
         self._show_hint()
         if former is None:
             self._navigator.take_notice(name)
-        self._canvas.update()
+        self._canvas.redraw()
 
     def _show_hint(self) -> None:
         self._hint.setVisible(not self._layers and self._canvas.can_draw)
@@ -350,29 +348,3 @@ class Scene3D(QWidget):
         self._hint.setGeometry(self.rect().adjusted(4 * GRID_PX, 0, -4 * GRID_PX, 0))
         for overlay in (self._buttons, self._legend, self._hint):
             overlay.raise_()
-
-
-def warm_up(parent: QWidget) -> Iterator[None]:
-    """Draw each kind of thing once unseen: compile the shaders of all views before the first page needs them.
-
-    Step by step, so that between two steps the window can answer.
-    """
-    corners = ((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
-    scene = Scene3D(parent)
-    scene.setFixedSize(_WARM_UP_PX, _WARM_UP_PX)
-    scene.grab_image()
-    yield
-    scene.set_points("points", corners)
-    scene.grab_image()
-    yield
-    scene.set_line("line", corners)
-    scene.grab_image()
-    yield
-    scene.set_mesh("mesh", *box_mesh(*corners))
-    scene.set_label("label", corners[0], "0")
-    scene.grab_image()
-    yield
-    scene.set_ground("ground", corners[0], (1.0, 1.0), corners)
-    scene.grab_image()
-    yield
-    scene.deleteLater()

@@ -23,28 +23,24 @@ _POSE_BYTES = 28
 
 
 class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no types
-    """Triangles."""
+    """Triangles.
+
+    Attributes:
+        part: what is drawn.
+    """
 
     def __init__(self, part: Part) -> None:
         super().__init__()
-        self._part = part
+        self.part = part
         self._buffers: dict[str, QOpenGLBuffer] = {}
         self._colors: AnyArray = np.ones(4, dtype=np.float32)
-        self._forget_buffers()
+        self._dirty = {"position", "normal", "index", "color", "pose"}
         opaque = BACKS if part.is_rim else OPAQUE if part.poses is None else FRONTS
         self.setGLOptions(opaque if part.paint.opacity == 1 else BLENDED)
 
-    def initializeGL(self) -> None:
-        """Forget the buffers of an earlier context."""
-        self._forget_buffers()
-
-    def _forget_buffers(self) -> None:
-        self._buffers = {}
-        self._dirty = {"position", "normal", "index", "color", "pose"}
-
     def take_vertices(self) -> None:
         """Draw the part's vertices, or its instances, as they are now."""
-        self._dirty.add("position" if self._part.poses is None else "pose")
+        self._dirty.add("position" if self.part.poses is None else "pose")
 
     def take_colors(self, colors: AnyArray) -> None:
         """Draw in a colour (4,) or in one for each vertex or instance (N, 4)."""
@@ -65,19 +61,19 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
         projection = np.array(self.projectionMatrix().data(), dtype=np.float32)
         GL.glUniformMatrix4fv(program.projection, 1, False, projection)
         GL.glUniform3f(program.up, *self.view().up_before_eye())
-        GL.glUniform1f(program.gloss, self._part.gloss)
-        GL.glUniform1f(program.lit, 0.0 if self._part.is_rim else 1.0)
+        GL.glUniform1f(program.gloss, self.part.gloss)
+        GL.glUniform1f(program.lit, 0.0 if self.part.is_rim else 1.0)
         enabled = self._bind()
         self._draw_triangles()
         for location in enabled:
-            if self._part.poses is not None:
+            if self.part.poses is not None:
                 glVertexAttribDivisorARB(location, 0)
             GL.glDisableVertexAttribArray(location)
         GL.glUseProgram(0)
 
     def _bind(self) -> list[int]:
         """Bind the buffers to the shader's attributes."""
-        is_many = self._part.poses is not None
+        is_many = self.part.poses is not None
         enabled = []
         for name, attributes in (_ARRAYS | _INSTANCES).items():
             if name not in self._buffers:
@@ -99,7 +95,7 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
         return enabled
 
     def _draw_triangles(self) -> None:
-        part = self._part
+        part = self.part
         if part.indices is None:
             GL.glDrawArrays(GL.GL_TRIANGLES, 0, len(part.vertices_m))
             return
@@ -113,7 +109,7 @@ class SurfaceItem(GLGraphicsItem):  # type: ignore[misc]  # pyqtgraph has no typ
 
     def _upload(self) -> None:
         """Upload what has changed; faces of vertices without a position collapse at the origin."""
-        part = self._part
+        part = self.part
         if "position" in self._dirty:
             self._store("position", np.nan_to_num(part.vertices_m))
         if "normal" in self._dirty and part.normals is not None:

@@ -1,193 +1,167 @@
-"""The OpenGL widget of a 3D view: draws layers as a camera sees them."""
+"""The widget of a 3D view: shows the newest picture that the drawing thread made of its layers."""
 
 from __future__ import annotations
 
-from math import prod
-from typing import Any
+from functools import partial
+from itertools import count
 
-from OpenGL import GL
-from pyqtgraph.opengl import GLViewWidget
-from PySide6.QtCore import QTimer
-from PySide6.QtGui import QHideEvent, QImage, QMatrix4x4, QPainter
-from PySide6.QtOpenGL import QOpenGLPaintDevice
+from PySide6.QtCore import QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import QHideEvent, QImage, QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
+from shiboken6 import isValid
+from typing_extensions import override
 
 from app.gui.theme import Theme
-from app.gui.views.scene.camera import Camera, Size
-from app.gui.views.scene.items import DrawnLayer
+from app.gui.views.scene.camera import Camera
+from app.gui.views.scene.drawing_thread import drawing_thread
 from app.gui.views.scene.overlay import paint_labels
 from app.gui.views.scene.parts import Layer
-from app.gui.views.scene.programs import GroundProgram, SurfaceProgram
-from app.gui.views.scene.smooth import SmoothBuffer
-from core.geometry import FloatArray
+from app.gui.views.scene.renderer import Renderer
+from app.gui.views.scene.snapshot import Snapshot, frozen
 
 _STILL_MS = 300
-_MOST_SMOOTH_TRIANGLES, _MOST_SMOOTH_PIXELS = 40_000, 600_000
-_SOFTWARE = (b"llvmpipe", b"softpipe", b"swrast", b"SwiftShader")
 
 
-class SceneView(GLViewWidget):  # type: ignore[misc]  # pyqtgraph has no types
-    """Draws the layers it is given, and only when something changed.
-
-    Where the processor draws, smooth edges more than double the time a picture takes: there they appear once
-    the view has been still for a moment.
+class SceneView(QWidget):
+    """Shows the layers it is given. A picture is drawn when something changed, at most one at a time.
 
     Attributes:
         can_draw: always.
-        surface_program: the surfaces' shader in this view's context.
-        ground_program: the ground's.
+
+    Signals: `painted` when a new picture is on the screen.
     """
 
     can_draw = True
+    painted = Signal()
 
     def __init__(self, theme: Theme, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("gl_view")
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
+        self._thread = drawing_thread()
+        self._renderer = Renderer()
+        self.destroyed.connect(partial(_release, self._renderer))
         self._camera = Camera()
         self._theme = theme
-        self._drawn: dict[str, DrawnLayer] = {}
-        self._is_following = True
-        self._is_still = False
-        self._is_software = True
-        self._smooth = SmoothBuffer()
-        super().__init__(parent)
+        self._numbers = count()
+        self._layers: dict[str, tuple[int, Layer]] = {}
+        self._picture: tuple[QImage, Snapshot] | None = None
+        self._is_new = False
+        self._is_changed, self._is_still = True, False
+        self._is_being_drawn = False
         self._stillness = QTimer(self, singleShot=True, interval=_STILL_MS)
-        self._stillness.timeout.connect(self._paint_smooth)
-        self._is_following = False
-        self.setObjectName("gl_view")
-        self.set_theme(theme)
+        self._stillness.timeout.connect(self._rest)
+        self._soon = QTimer(self, singleShot=True, interval=0)
+        self._soon.timeout.connect(self._ask)
 
     def put(self, name: str, layer: Layer) -> None:
         """Draw a layer from now on, instead of the one that had its name."""
-        self.drop(name)
-        drawn = DrawnLayer(layer, self._theme, self.devicePixelRatioF())
-        self._drawn[name] = drawn
-        for item in drawn.items:
-            self.addItem(item)
+        self._layers[name] = next(self._numbers), layer
+        self.redraw()
 
     def drop(self, name: str) -> None:
         """Draw a layer no more."""
-        if name in self._drawn:
-            for item in self._drawn.pop(name).items:
-                self.removeItem(item)
+        if self._layers.pop(name, None) is not None:
+            self.redraw()
 
     def set_camera(self, camera: Camera) -> None:
         """See from elsewhere."""
         self._camera = camera
-        self.update()
+        self.redraw()
 
     def set_theme(self, theme: Theme) -> None:
         """Draw everything in another theme's colours."""
         self._theme = theme
-        self.setBackgroundColor(theme.scene)
-        for drawn in self._drawn.values():
-            drawn.take_theme(theme)
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Have a new picture drawn soon: something else is to be seen."""
+        self._is_changed, self._is_still = True, False
+        self._stillness.start()
+        if not self._is_being_drawn:
+            self._soon.start()  # a page changes many layers one after the other
 
     def grab_image(self) -> QImage:
-        """The picture as it is now, with smooth edges."""
-        self._is_still = True
-        image: QImage = self.grabFramebuffer()
+        """The picture as it is now, with smooth edges; waits until it is drawn."""
+        snapshot = self._snapshot(is_still=True)
+        image = self._thread.run(partial(self._renderer.draw, snapshot=snapshot)).result()
+        image.setDevicePixelRatio(snapshot.pixel_ratio)
+        painter = QPainter(image)
+        self._paint_labels(painter, snapshot)
+        painter.end()
+        image.setDevicePixelRatio(1.0)
         return image
 
-    def up_before_eye(self) -> tuple[float, float, float]:
-        """The world's z-axis as the eye sees it."""
-        x, y, z = self._camera.axes[:, 2]
-        return float(x), float(y), float(z)
+    @override
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.redraw()
 
-    def update(self) -> None:
-        """Paint soon; but not because painting itself brings the items up to date."""
-        if not self._is_following:
-            self._is_still = False
-            self._stillness.start()
-            super().update()
-
-    def initializeGL(self) -> None:
-        """Compile for this context; it may be a second one, if the widget was moved to another window."""
-        self.surface_program, self.ground_program = SurfaceProgram(), GroundProgram()
-        self._smooth = SmoothBuffer()
-        self._is_software = any(word in GL.glGetString(GL.GL_RENDERER) for word in _SOFTWARE)
-        super().initializeGL()
-        for item in self.items:
-            item.initializeGL()
-
+    @override
     def hideEvent(self, event: QHideEvent) -> None:
-        """Give back what only a view on the screen needs."""
-        if self.isValid():
-            self.makeCurrent()
-            self._smooth.release()
-            self.doneCurrent()
         super().hideEvent(event)
+        self._picture = None
+        self._thread.run(self._renderer.release_buffers)
 
-    def projectionMatrix(self, region: Any, viewport: Any) -> QMatrix4x4:
-        """Ours instead of pyqtgraph's."""
-        del region, viewport
-        return _matrix(self._camera.projection((self.width(), self.height())))
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.redraw()
 
-    def viewMatrix(self) -> QMatrix4x4:
-        """Ours instead of pyqtgraph's."""
-        return _matrix(self._camera.T_eye_world)
-
-    def paintGL(self) -> None:
-        """Draw the layers as they are now, then the labels."""
-        self._is_following = True
-        try:
-            for drawn in self._drawn.values():
-                drawn.follow()
-            self._rank()
-        finally:
-            self._is_following = False
-        if self._is_to_be_smooth():
-            self._smooth.draw(super().paintGL, self._device_size(), self.defaultFramebufferObject())
-        else:
-            super().paintGL()
-        self._paint_labels()
-
-    def _paint_smooth(self) -> None:
-        """Prepare and draw in two steps, so that between them the window can answer."""
-        if not self.isVisible() or not self.isValid():
-            return
-        if self._smooth.is_ready(self._device_size()):
-            self._is_still = True
-            super().update()
-            return
-        self.makeCurrent()
-        self._smooth.prepare(self._device_size())
-        self.doneCurrent()
-        self._stillness.start()
-
-    def _device_size(self) -> Size:
-        return self.deviceWidth(), self.deviceHeight()
-
-    def _rank(self) -> None:
-        """Draw what is see-through from far to near."""
-        eye_m = self._camera.eye_m
-        layers = sorted(
-            self._drawn.values(),
-            key=lambda drawn: -drawn.distance_m(eye_m) if drawn.is_see_through else 0.0,
-        )
-        for rank, drawn in enumerate(layers):
-            drawn.take_rank(rank)
-
-    def _is_to_be_smooth(self) -> bool:
-        """Whether edges are to be smooth; not if the picture would take so long that the window stutters."""
-        if not self._is_software:
-            return True
-        n_triangles = sum(drawn.n_triangles for drawn in self._drawn.values() if drawn.layer.is_visible)
-        is_quick = n_triangles <= _MOST_SMOOTH_TRIANGLES and prod(self._device_size()) <= _MOST_SMOOTH_PIXELS
-        return self._is_still and is_quick
-
-    def _paint_labels(self) -> None:
-        layers = [
-            drawn.layer for drawn in self._drawn.values() if drawn.layer.text and drawn.layer.is_visible
-        ]
-        if not layers:
-            return
-        # Not on the widget itself: `QWidget.grab` redirects such a painter away from what is grabbed.
-        device = QOpenGLPaintDevice(*self._device_size())
-        device.setDevicePixelRatio(self.devicePixelRatioF())
-        painter = QPainter(device)
-        painter.setFont(self.font())
-        paint_labels(painter, layers, self._theme, self._camera, (self.width(), self.height()))
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.fillRect(event.rect(), self._theme.color("scene"))
+        if self._picture is not None:
+            image, snapshot = self._picture
+            # Where the view has another size by now the picture stays in its middle until the next one comes.
+            width, height = snapshot.size
+            painter.translate(QPointF((self.width() - width) // 2, (self.height() - height) // 2))
+            image.setDevicePixelRatio(snapshot.pixel_ratio)
+            painter.drawImage(QPointF(0, 0), image)
+            self._paint_labels(painter, snapshot)
         painter.end()
+        if self._is_new:
+            self._is_new = False
+            self.painted.emit()
+
+    def _rest(self) -> None:
+        """Nothing has changed for a moment: there is time for smooth edges."""
+        self._is_changed = self._is_still = True
+        self._ask()
+
+    def _ask(self) -> None:
+        """Have a picture drawn, if it would be seen and none is being drawn; otherwise it follows that one."""
+        if not self.isVisible() or self._is_being_drawn or not self._is_changed:
+            return
+        self._is_changed, self._is_being_drawn = False, True
+        snapshot = self._snapshot(self._is_still)
+        self._thread.run_then(
+            partial(self._renderer.draw, snapshot=snapshot), partial(self._take, snapshot=snapshot)
+        )
+
+    def _take(self, image: QImage, snapshot: Snapshot) -> None:
+        if not isValid(self):
+            return
+        self._is_being_drawn = False
+        if self.isVisible():
+            self._picture, self._is_new = (image, snapshot), True
+            self.update()
+        if self._is_changed:
+            self._soon.start()
+
+    def _snapshot(self, is_still: bool) -> Snapshot:
+        size = max(self.width(), 1), max(self.height(), 1)
+        layers = {number: frozen(layer) for number, layer in self._layers.values()}
+        return Snapshot(layers, self._camera, self._theme, size, self.devicePixelRatioF(), is_still)
+
+    def _paint_labels(self, painter: QPainter, snapshot: Snapshot) -> None:
+        layers = [layer for layer in snapshot.layers.values() if layer.text and layer.is_visible]
+        if layers:
+            painter.setFont(self.font())
+            paint_labels(painter, layers, snapshot.theme, snapshot.camera, snapshot.size)
 
 
-def _matrix(values: FloatArray) -> QMatrix4x4:
-    return QMatrix4x4(*(float(value) for value in values.ravel()))
+def _release(renderer: Renderer) -> None:
+    drawing_thread().run(renderer.release)

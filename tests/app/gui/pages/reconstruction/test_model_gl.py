@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QImage
-from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtTest import QTest
 
 from app.gui.pages.reconstruction.loading import key_of, load_model
 from app.gui.pages.reconstruction.view import ModelView
+from app.gui.views.scene.view import SceneView
 from core.pipeline.session_view import SessionView
 
 pytestmark = pytest.mark.gl
@@ -57,7 +57,7 @@ def test_the_collision_model_lies_over_the_surface(view):
 def test_the_ruler_measures_between_two_real_clicks(view):
     view._ruler_button.click()
     view.scene.look_from("front")
-    gl = view.scene.findChild(QOpenGLWidget)
+    gl = view.scene.findChild(SceneView)
     middle = QPoint(gl.width() // 2, gl.height() // 2)
     for step in (-60, 60):
         QTest.mouseClick(
