@@ -1,4 +1,4 @@
-"""The thread in which 3D views draw: without a graphics card a picture takes longer than a window may stall."""
+"""The thread that draws 3D views: without a graphics card a picture takes longer than a window may stall."""
 
 from __future__ import annotations
 

@@ -132,7 +132,7 @@ class SceneView(QWidget):
         self._ask()
 
     def _ask(self) -> None:
-        """Have a picture drawn, if it would be seen and none is being drawn; otherwise it follows that one."""
+        """Have a picture drawn, if it would be seen and none is being drawn; else it follows that one."""
         if not self.isVisible() or self._is_being_drawn or not self._is_changed:
             return
         self._is_changed, self._is_being_drawn = False, True
