@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -40,13 +42,19 @@ class GroundPart(Part):
         half_m: (2,) half its sides.
         grid_m: between two lines; every fifth is stronger. 0: none.
         fades: whether it fades into the background towards its rim, or ends there.
-        shadow: (R, R) darkness, 0 to 255; rows along y.
+        light: gives the share (R, R) of the light that reaches the ground; rows along y.
     """
 
     half_m: FloatArray = field(default_factory=lambda: np.ones(2))
     grid_m: float = 0.0
     fades: bool = True
-    shadow: ByteArray = field(default_factory=lambda: np.zeros((_N_CELLS, _N_CELLS), dtype=np.uint8))
+    light: Callable[[], FloatArray] = lambda: np.ones((_N_CELLS, _N_CELLS))
+
+    @property
+    def shadow(self) -> ByteArray:
+        """Darkness (R, R), 0 to 255; found anew each time, which takes some ms, by the thread that draws."""
+        darkness: ByteArray = np.rint(255 * (1 - self.light())).astype(np.uint8)
+        return darkness
 
     def outline_m(self) -> FloatArray:
         """Nothing: a view is fitted to what is on the ground."""
@@ -84,20 +92,25 @@ class Ground:
             fades=fades,
         )
         self._clear = self._light_beside(np.asarray(casters_m, dtype=float))
-        self._show(self._clear)
+        self._show(lambda: self._clear)
         self.layer = Layer((self._part,))
 
     def shade_candies(self, positions_m: AnyArray, radius_m: float) -> None:
         """Add the shadows of candies at (n, 3) that lie on it, NaN: absent."""
+        self._show(partial(self._light_between, np.array(positions_m, dtype=float), radius_m))
+
+    def _show(self, light: Callable[[], FloatArray]) -> None:
+        self._part.light = light
+        self._part.revision += 1
+
+    def _light_between(self, positions_m: FloatArray, radius_m: float) -> FloatArray:
+        """The light (R, R), 0 to 1, that candies leave, too."""
         with np.errstate(invalid="ignore"):
             is_low = np.abs(positions_m[:, 2] - self._center_m[2] - radius_m / 2) < _CANDY_BAND_M
         discs = positions_m[is_low, None, :2] + radius_m * _DISC
         spread = self._spread(self._is_covered(discs.reshape(-1, 2)), _CANDY_SPREAD_M)
-        self._show(self._clear * (1 - _CANDY_DARKNESS * spread))
-
-    def _show(self, light: FloatArray) -> None:
-        self._part.shadow = np.rint(255 * (1 - light)).astype(np.uint8)
-        self._part.revision += 1
+        light: FloatArray = self._clear * (1 - _CANDY_DARKNESS * spread)
+        return light
 
     def _light_beside(self, casters_m: FloatArray) -> FloatArray:
         """The light (R, R), 0 to 1, that what stands there leaves; points outside the ground do not count."""
