@@ -1,10 +1,8 @@
-"""A strip of captioned pictures that fills as they arrive."""
+"""A strip of captioned pictures that fills as they arrive, and shows all of them at once."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import (
@@ -16,50 +14,43 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QFontMetricsF, QImage, QKeyEvent, QPainter, QPaintEvent, QPen, QPixmap
+from PySide6.QtGui import (
+    QFontMetricsF,
+    QPainter,
+    QPen,
+    QPixmap,
+    QResizeEvent,
+)
 from PySide6.QtWidgets import (
-    QDialog,
-    QHBoxLayout,
-    QLabel,
     QListView,
-    QPushButton,
+    QSizePolicy,
     QStyle,
     QStyledItemDelegate,
     QStyleOptionViewItem,
-    QVBoxLayout,
     QWidget,
 )
 
 from app.gui.theme import GRID_PX, theme_of
 from app.gui.views.painting import draw_elided, make_bare, smaller
-from app.gui.views.picture_loader import PictureLoader, PictureModel, PictureRow
+from app.gui.views.picture_dialog import Picture, PictureDialog
+from app.gui.views.picture_loader import PictureModel, PictureRow
 
 _Index = QModelIndex | QPersistentModelIndex
-
-
-@dataclass(frozen=True)
-class Picture:
-    """A picture to show.
-
-    Attributes:
-        caption: what it shows.
-        path: its file; None while it is still expected.
-    """
-
-    caption: str
-    path: Path | None = None
+_MOST_ROWS = 2
+_LEAST_CELL_PX = 48
+"""Narrower, a caption of two digits and its picture are no longer made out."""
 
 
 class _Delegate(QStyledItemDelegate):
-    """A picture with its caption under it, or a box with its state."""
+    """A picture, `height_px` high, with its caption under it, or a box with its state."""
 
     def __init__(self, height_px: int, parent: QWidget) -> None:
         super().__init__(parent)
-        self._height_px = height_px
+        self.height_px = height_px
         self._view = parent
 
     def sizeHint(self, _option: QStyleOptionViewItem, _index: _Index) -> QSize:
-        return cell_size(self._view, self._height_px)
+        return cell_size(self._view, self.height_px)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: _Index) -> None:
         rect: QRect = option.rect
@@ -68,7 +59,7 @@ class _Delegate(QStyledItemDelegate):
         painter.save()
         painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.SmoothPixmapTransform)
         box = QRectF(rect).adjusted(3, 3, -3, -3)
-        frame = QRectF(box.left(), box.top(), box.width(), self._height_px)
+        frame = QRectF(box.left(), box.top(), box.width(), self.height_px)
         pixmap = index.data(Qt.ItemDataRole.DecorationRole)
         if isinstance(pixmap, QPixmap) and not pixmap.isNull():
             painter.fillRect(frame, theme.color("scene"))
@@ -117,8 +108,22 @@ def cell_size(view: QWidget, height_px: int) -> QSize:
     return QSize(round(height_px * 4 / 3) + 6, round(height_px + line) + 10)
 
 
+def fitting_rows(view: QWidget, n: int, room: QSize, most_px: int) -> tuple[int, int] | None:
+    """Return in how many rows, and how high, `n` pictures are largest in a room; none: they do not fit."""
+    around, best = cell_size(view, 0), (0, 0)
+    for rows in range(1, _MOST_ROWS + 1):
+        columns = -(-n // rows)
+        wide_px = (room.width() // columns - around.width()) * 3 // 4
+        height_px = min(wide_px, room.height() // rows - around.height(), most_px)
+        if height_px > best[1] and cell_size(view, height_px).width() >= _LEAST_CELL_PX:
+            best = rows, height_px
+    return best if best[0] else None
+
+
 class FilmStrip(QWidget):
-    """A horizontal strip of pictures; a click or Enter opens one large.
+    """A strip of pictures; a click or Enter opens one large.
+
+    Many lie in smaller cells or two rows; where even that does not show all, it scrolls.
 
     Attributes:
         activated: the index of the picture that was opened.
@@ -138,26 +143,55 @@ class FilmStrip(QWidget):
         self._view.setObjectName("film_strip_view")
         self._view.setAccessibleName(self.tr("Pictures"))
         self._view.setFlow(QListView.Flow.LeftToRight)
-        self._view.setWrapping(False)
+        self._view.setResizeMode(QListView.ResizeMode.Adjust)
         self._view.setUniformItemSizes(True)
-        self._view.setSpacing(2)
         make_bare(self._view)
         self._view.setEditTriggers(QListView.EditTrigger.NoEditTriggers)
         self._view.setHorizontalScrollMode(QListView.ScrollMode.ScrollPerPixel)
         self._view.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._view.setModel(self._model)
-        self._view.setItemDelegate(_Delegate(height_px, self._view))
+        self._delegate = _Delegate(height_px, self._view)
+        self._view.setItemDelegate(self._delegate)
         self._view.clicked.connect(self._open)
         self._view.activated.connect(self._open)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self._view)
-        self._fit_height()
+        policy = QSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        policy.setHeightForWidth(True)
+        self.setSizePolicy(policy)
         self._dialog: PictureDialog | None = None
 
-    def _fit_height(self) -> None:
-        bar = self._view.style().pixelMetric(QStyle.PixelMetric.PM_ScrollBarExtent)
-        self.setFixedHeight(cell_size(self._view, self._height_px).height() + bar + GRID_PX)
+    def _fitting(self, width_px: int) -> tuple[int, int] | None:
+        # one pixel less: the list wraps what fits exactly
+        room = QSize(width_px - 1, cell_size(self, self._height_px).height())
+        return fitting_rows(self, max(len(self._pictures), 1), room, self._height_px)
+
+    def heightForWidth(self, width: int) -> int:
+        """Return the height of the rows that show all pictures in a width, or of one with its scroll bar."""
+        rows, height_px = self._fitting(width) or (1, self._height_px + self._bar_px())
+        return rows * cell_size(self, height_px).height() + GRID_PX
+
+    def sizeHint(self) -> QSize:
+        """Return the size of one row of pictures as large as they are meant to be."""
+        cell = cell_size(self, self._height_px)
+        return QSize(max(len(self._pictures), 1) * cell.width() + 1, cell.height() + GRID_PX)
+
+    def _bar_px(self) -> int:
+        return self._view.style().pixelMetric(QStyle.PixelMetric.PM_ScrollBarExtent)
+
+    def _arrange(self) -> None:
+        """Find the largest cells with which all are seen; where none are, scroll along one row."""
+        found = self._fitting(self.width())
+        self._delegate.height_px = self._height_px if found is None else found[1]
+        # with "as needed" the list would leave the bar's height free even where all fit
+        on, off = Qt.ScrollBarPolicy.ScrollBarAlwaysOn, Qt.ScrollBarPolicy.ScrollBarAlwaysOff
+        self._view.setHorizontalScrollBarPolicy(on if found is None else off)
+        self._view.setWrapping(found is not None)
+        self._view.setGridSize(cell_size(self, self._delegate.height_px))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        """Find the cells that fit."""
+        super().resizeEvent(event)
+        self._view.setGeometry(self.rect())  # no layout: Qt would ask that for the height
+        self._arrange()
 
     @property
     def pictures(self) -> tuple[Picture, ...]:
@@ -179,6 +213,8 @@ class FilmStrip(QWidget):
         current = self._view.currentIndex().row()
         self._pictures = shown
         self._model.set_rows([_row(picture) for picture in shown])
+        self.updateGeometry()
+        self._arrange()
         self._view.setCurrentIndex(self._model.index(current, 0))
         self._view.horizontalScrollBar().setValue(place)
 
@@ -198,140 +234,3 @@ class FilmStrip(QWidget):
 
     def _select(self, row: int) -> None:
         self._view.setCurrentIndex(self._model.index(row, 0))
-
-
-class PictureDialog(QDialog):
-    """A large preview with previous and next (arrow keys) through the pictures that are there.
-
-    Attributes:
-        index_changed: which picture is shown now.
-    """
-
-    index_changed = Signal(int)
-
-    def __init__(self, pictures: Sequence[Picture], index: int, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
-        self.setObjectName("picture_dialog")
-        self._pictures = tuple(pictures)
-        self._index = -1
-        self._loader = PictureLoader(self)
-        self._loader.loaded.connect(self._show_image)
-        self._build()
-        self.show_picture(index)
-
-    @property
-    def index(self) -> int:
-        """Which picture is shown."""
-        return self._index
-
-    def _build(self) -> None:
-        self._canvas = _Canvas(self)
-        self._caption = QLabel(self)
-        self._caption.setObjectName("picture_caption")
-        self._caption.setWordWrap(True)
-        self._previous = self._button(self.tr("Previous"), "picture_previous", -1)
-        self._next = self._button(self.tr("Next"), "picture_next", 1)
-        close = QPushButton(self.tr("Close"), self)
-        close.setObjectName("picture_close")
-        close.setAutoDefault(False)
-        close.clicked.connect(self.accept)
-        row = QHBoxLayout()
-        row.setSpacing(GRID_PX)
-        row.addWidget(self._caption, 1)
-        for button in (self._previous, self._next, close):
-            row.addWidget(button)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, GRID_PX)
-        column.setSpacing(GRID_PX)
-        column.addWidget(self._canvas, 1)
-        column.addLayout(row)
-        self.resize(880, 680)
-
-    def _button(self, text: str, name: str, step: int) -> QPushButton:
-        button = QPushButton(text, self)
-        button.setObjectName(name)
-        button.setAutoDefault(False)
-        button.clicked.connect(lambda: self._step(step))
-        return button
-
-    def show_picture(self, index: int) -> None:
-        """Show one picture."""
-        self._index = index
-        picture = self._pictures[index]
-        place = self.tr("{k} of {n}").format(k=index + 1, n=len(self._pictures))
-        self._caption.setText(f"{picture.caption}   ({place})")
-        self.setWindowTitle(picture.caption)
-        self._previous.setEnabled(self._neighbour(-1) is not None)
-        self._next.setEnabled(self._neighbour(1) is not None)
-        if picture.path is None:
-            self._canvas.show_text(self.tr("This picture does not exist yet."))
-        else:
-            self._loader.request("large", picture.path)
-        self.index_changed.emit(index)
-
-    def _neighbour(self, step: int) -> int | None:
-        """The nearest picture in that direction that exists."""
-        index = self._index + step
-        while 0 <= index < len(self._pictures):
-            if self._pictures[index].path is not None:
-                return index
-            index += step
-        return None
-
-    def _step(self, step: int) -> None:
-        found = self._neighbour(step)
-        if found is not None:
-            self.show_picture(found)
-
-    def _show_image(self, _key: object, image: QImage) -> None:
-        if image.isNull():
-            path = self._pictures[self._index].path
-            self._canvas.show_text(self.tr("The picture cannot be read: {path}").format(path=path))
-        else:
-            self._canvas.show_image(image)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Previous and next by arrow keys."""
-        if event.key() == Qt.Key.Key_Left:
-            self._step(-1)
-        elif event.key() == Qt.Key.Key_Right:
-            self._step(1)
-        else:
-            super().keyPressEvent(event)
-
-
-class _Canvas(QWidget):
-    """A picture as large as the widget allows, or a sentence instead."""
-
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
-        self.setObjectName("picture_canvas")
-        self._pixmap = QPixmap()
-        self._text = ""
-
-    def show_image(self, image: QImage) -> None:
-        self._pixmap = QPixmap.fromImage(image)
-        self.update()
-
-    def show_text(self, text: str) -> None:
-        self._pixmap = QPixmap()
-        self._text = text
-        self.update()
-
-    def sizeHint(self) -> QSize:
-        return QSize(800, 600)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        theme = theme_of(self)
-        painter.fillRect(self.rect(), theme.color("scene"))
-        if self._pixmap.isNull():
-            painter.setPen(theme.color("muted"))
-            painter.drawText(self.rect(), int(Qt.AlignmentFlag.AlignCenter), self._text)
-        else:
-            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-            size = self._pixmap.size().scaled(self.size(), Qt.AspectRatioMode.KeepAspectRatio)
-            box = QRectF(0, 0, size.width(), size.height())
-            box.moveCenter(QRectF(self.rect()).center())
-            painter.drawPixmap(box, self._pixmap, QRectF(self._pixmap.rect()))
-        painter.end()

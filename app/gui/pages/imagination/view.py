@@ -13,7 +13,8 @@ from typing_extensions import override
 from app.gui.pages.imagination.drop import PhaseKey, ShownBody, ShownDrop, push_of, tilted_pose
 from app.gui.pages.layouts import lay_around
 from app.gui.theme import GRID_PX, theme_of
-from app.gui.views.film_strip import FilmStrip, Picture
+from app.gui.views.film_strip import FilmStrip
+from app.gui.views.picture_dialog import Picture
 from app.gui.views.scene import Scene3D, candy_legend
 from app.gui.views.timeline import Section, Timeline
 from core.geometry import FloatArray

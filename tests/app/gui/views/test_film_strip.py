@@ -1,11 +1,15 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor, QImage
+from PySide6.QtGui import QColor, QFontMetrics, QImage
 from PySide6.QtWidgets import QLabel, QListView, QPushButton
 
-from app.gui.views.film_strip import FilmStrip, Picture, PictureDialog
+from app.gui.views.film_strip import FilmStrip
+from app.gui.views.painting import smaller
+from app.gui.views.picture_dialog import Picture, PictureDialog
 
 LEFT = Qt.MouseButton.LeftButton
 CAPTIONS = [f"pour {k}" for k in range(6)]
@@ -27,7 +31,7 @@ def pictures(tmp_path):
 def strip(qtbot):
     widget = FilmStrip()
     qtbot.addWidget(widget)
-    widget.resize(900, widget.height())
+    widget.resize(900, widget.heightForWidth(900))
     widget.show()
     return widget
 
@@ -112,8 +116,53 @@ def test_the_large_picture_is_shown_and_a_broken_one_is_named(qtbot, pictures, t
     qtbot.waitUntil(lambda: middle() != (160, 100, 50))
 
 
+@pytest.mark.parametrize(("width_px", "n"), [(763, 7), (763, 24), (763, 30), (1250, 7), (1250, 30)])
+def test_all_pictures_are_seen_at_once_and_can_be_clicked(qtbot, strip, pictures, width_px, n):
+    shown = [Picture(str(k + 1), pictures[k % 6].path) for k in range(n)]
+    strip.set_pictures(shown)
+    strip.resize(width_px, strip.heightForWidth(width_px))
+    qtbot.wait(20)
+    view = view_of(strip)
+    places = [view.visualRect(view.model().index(row, 0)) for row in range(n)]
+    assert all(view.viewport().rect().contains(place) for place in places)
+    assert not view.horizontalScrollBar().isVisible()
+    assert not any(a.intersects(b) for a, b in pairwise(places))
+    words = QFontMetrics(smaller(view.font()))
+    assert min(place.width() for place in places) >= words.horizontalAdvance("30") + 6
+    assert view.verticalScrollBar().maximum() == 0
+    assert strip.height() <= strip.sizeHint().height()  # no more is taken from the 3D view above it
+    with qtbot.waitSignal(strip.activated) as heard:
+        qtbot.mouseClick(view.viewport(), LEFT, pos=places[-1].center())
+    assert heard.args == [n - 1]
+    strip.findChild(PictureDialog).accept()
+
+
+def test_the_arrow_keys_walk_through_both_rows_and_enter_opens(qtbot, strip, pictures):
+    strip.set_pictures([Picture(str(k + 1), pictures[k % 6].path) for k in range(30)])
+    strip.resize(763, strip.heightForWidth(763))
+    qtbot.wait(20)
+    view = view_of(strip)
+    view.setCurrentIndex(view.model().index(0, 0))
+    for _ in range(16):
+        qtbot.keyClick(view, Qt.Key.Key_Right)
+    assert view.currentIndex().row() == 16
+    qtbot.keyClick(view, Qt.Key.Key_Up)
+    assert view.currentIndex().row() == 1
+    with qtbot.waitSignal(strip.activated) as heard:
+        qtbot.keyClick(view, Qt.Key.Key_Return)
+    assert heard.args == [1]
+    strip.findChild(PictureDialog).accept()
+
+
+def test_few_pictures_stay_as_large_as_they_are_meant_to_be(qtbot, strip, pictures):
+    strip.set_pictures(pictures)
+    strip.resize(1250, strip.heightForWidth(1250))
+    qtbot.wait(20)
+    assert middle_of(strip, 1).x() - middle_of(strip, 0).x() == round(96 * 4 / 3) + 6
+
+
 def test_filling_it_does_not_scroll_it_back(qtbot, strip, pictures):
-    strip.resize(300, strip.height())
+    strip.resize(100, strip.heightForWidth(100))  # too narrow for all at a glance
     strip.set_pictures(pictures[:2], CAPTIONS)
     qtbot.wait(20)
     bar = view_of(strip).horizontalScrollBar()
