@@ -39,6 +39,12 @@ def verdict_sentence(containability: Containability) -> str:
     return f"{verdict}: {_stayed(containability)} (Omega {omega}, the threshold is {threshold})."
 
 
+def verdict_parts(containability: Containability) -> tuple[str, str]:
+    """Return `verdict_sentence` as a headline and what else it says; empty if that is all."""
+    headline, _, further = verdict_sentence(containability).rstrip(".").partition(". ")
+    return f"{headline}.", f"{further}." if further else ""
+
+
 def undecided_sentence(verdict: Verdict) -> str:
     """Say why there is no answer, and what would give one."""
     solid, free = verdict.capacity_share > verdict.threshold, (verdict.other_share or 0.0) > verdict.threshold
@@ -85,11 +91,11 @@ def verdict_summary(
 def verdict_reason(containability: Containability, n_on_top: int) -> str:
     """Give the paper's verdict; if it decides, what had to stay, what did, and where the others are.
 
-    `n_on_top` lie on the object, not in it.
+    For where Omega and its threshold are drawn beside it. `n_on_top` lie on the object, not in it.
     """
     found = containability
     if found.verdict is not None:
-        said = omega_verdict_sentence(found)
+        said = f"{_by_omega(found)}."
         if found.is_open_container or not n_on_top:
             return said
         none_stays = found.verdict.n_candies < 0.5
@@ -135,8 +141,12 @@ def held_text(verdict: Verdict) -> str:
 def omega_verdict_sentence(containability: Containability) -> str:
     """Give the verdict by Omega against its threshold (Sec. III-A), with these candies and this drop."""
     omega, threshold = omega_texts(containability)
+    return f"{_by_omega(containability)} (Omega {omega}, the threshold is {threshold})."
+
+
+def _by_omega(containability: Containability) -> str:
     verdict = "an open container" if containability.exceeds_omega else "not an open container"
-    return f"By Omega {verdict}: {_stayed(containability)} (Omega {omega}, the threshold is {threshold})."
+    return f"By Omega {verdict}: {_stayed(containability)}"
 
 
 def _stayed(containability: Containability) -> str:

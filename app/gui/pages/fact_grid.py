@@ -22,6 +22,7 @@ class Fact:
         tooltip: what it means and where it comes from.
         before: its value in the last result; empty if there is none to compare with.
         is_wide: whether the value also takes the column of what was before.
+        is_beside: whether it lies beside the fact before it, unless a column says what was before.
     """
 
     title: str
@@ -29,6 +30,7 @@ class Fact:
     tooltip: str = ""
     before: str = ""
     is_wide: bool = False
+    is_beside: bool = False
 
 
 class FactGrid(QWidget):
@@ -64,10 +66,13 @@ class FactGrid(QWidget):
         if has_before:
             self._put(0, 1, self.tr("now"), "muted")
             self._put(0, 2, self.tr("last"), "muted")
+        row, column = 0, 0
         for k, fact in enumerate(facts):
-            row, column = k // self._per_row + 1, 2 * (k % self._per_row)
+            is_beside = bool(k % self._per_row) or (fact.is_beside and not has_before)
+            row, column = (row, column + 2) if is_beside else (row + 1, 0)
+            follows = k + 1 < len(facts) and facts[k + 1].is_beside
+            is_wide = fact.is_wide or (self._per_row == 1 and not has_before and not column and not follows)
             self._put(row, column, fact.title, "muted", fact.tooltip)
-            is_wide = fact.is_wide or (self._per_row == 1 and not has_before)
             self._put(row, column + 1, fact.value, "", fact.tooltip, 3 if is_wide else 1)
             self._put(row, column + 2, fact.before, "muted", fact.tooltip)
 

@@ -12,6 +12,7 @@ from core.report import (
     pours_sentence,
     risk_sentence,
     tries_sentence,
+    verdict_parts,
     verdict_reason,
     verdict_sentence,
     verdict_summary,
@@ -53,6 +54,23 @@ def test_a_verdict_by_capacity_says_what_it_holds_and_the_papers_stands_beside(t
     )
     assert verdict_reason(empty, 5).endswith(" 5 lie on top; none would stay when it is tilted.")
     assert verdict_reason(lies_on, 7).endswith(" 7 lie on top, with no wall around them.")
+
+
+def test_a_verdict_is_parted_into_a_headline_and_the_rest(tray: Containability) -> None:
+    for verdict in (
+        Verdict(0.634, 0.1, 137.2, 146.4, too_small_m=0.0066),
+        Verdict(0.0, 0.1, 0.0, 0.0),
+        Verdict(0.02, 0.1, 3.0, 3.2, unseen_ml=42.0, other_share=0.4),
+        None,
+    ):
+        found = replace(tray, verdict=verdict)
+        headline, further = verdict_parts(found)
+        assert f"{headline} {further}".rstrip() == verdict_sentence(found)
+        assert headline.endswith(".")
+    assert verdict_parts(replace(tray, verdict=Verdict(0.634, 0.1, 137.2, 146.4)))[0] == (
+        "Open container: it holds 137 candies (146 ml)."
+    )
+    assert verdict_parts(tray)[1] == ""
 
 
 def test_tries_say_how_sure_a_pour_is(pours: PourGrid, choice: PourChoice) -> None:
@@ -136,8 +154,9 @@ def test_where_omega_decides_the_reason_says_what_had_to_stay(
     )
     few = replace(block, retained=np.arange(block.n_drop) == 3, omega_threshold=0.03)
     assert "only 1.6 % did. The others fell past it" in verdict_reason(few, 0).replace("\u00a0", " ")
+    # beside Omega's bar, which has the numbers
     assert verdict_reason(replace(tray, verdict=Verdict(0.6, 0.1, 137.2, 146.4)), 0) == (
-        omega_verdict_sentence(tray)
+        f"{omega_verdict_sentence(tray).partition(' (Omega')[0]}."
     )
 
 

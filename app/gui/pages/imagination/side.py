@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import degrees, isfinite, isinf
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QPushButton, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QPushButton, QSizePolicy, QStackedWidget, QWidget
 
 from app.gui.desk.desk import Desk
 from app.gui.pages.fact_grid import Fact, FactGrid
@@ -25,15 +25,15 @@ from core.imagination.results import PoursSoFar
 from core.imagination.retention.result import Retention, retention_sentence
 from core.pipeline.session_view import ALL_IMAGINED
 from core.report.plot_geometry import FootprintPlan
-from core.report.sentences import duration_text, verdict_reason, verdict_sentence
+from core.report.sentences import duration_text, verdict_parts, verdict_reason
 from core.stages import MESH, groups_of, stages_before
 
 MM = 1000.0
 STAGES = (*stages_before("risk", MESH)[1:], "retention")
 """What the page runs; the collision model is made again with them."""
 GROUPS = groups_of(*STAGES)
-_LOWER_PX = 38 * GRID_PX
-"""Of footprint or editor, at the least."""
+_PICTURE_PX, _EDITOR_PX = 18 * GRID_PX, 30 * GRID_PX
+"""Heights, at the least: with the longest verdict the panel of a window of 800 pixels need not scroll."""
 
 
 class VerdictSide(SidePanel):
@@ -57,6 +57,7 @@ class VerdictSide(SidePanel):
     def __init__(self, desk: Desk) -> None:
         super().__init__(self.tr("Imagine"))
         self._verdict = text_label("drop_verdict", "verdict")
+        self._details = text_label("drop_details")
         self._reason = text_label("drop_reason")
         self.failed = text_label("drop_failed", "failed")
         self._empty_button = QPushButton()
@@ -72,14 +73,10 @@ class VerdictSide(SidePanel):
         self.pages.add("retention", self.tr("Tilting"), self.tr("How many candies stay as it is tilted"))
         self.pages.add("parameters", "", self.tr("What the next run is imagined with"))
         self.pages.chosen.connect(self._turn)
-        self._stack = QStackedWidget()
-        self._result = self._make_result()
-        self._stack.addWidget(self._result)
-        self._stack.setMinimumHeight(_LOWER_PX)
-        # it takes the space that is left: by its size hint the panel would scroll long before it has to
-        self._stack.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Ignored)
+        self._make_result()
         for widget in (
             self._verdict,
+            self._details,
             self._reason,
             self.failed,
             self._empty_button,
@@ -88,41 +85,40 @@ class VerdictSide(SidePanel):
             self.pages,
         ):
             self.body.addWidget(widget)
-        self.body.addWidget(self._stack, 1)
+        self.body.addWidget(self._picture, 1)
+        self.body.addWidget(self.facts)
         desk.workspace.parameters_changed.connect(self._count)
         self._count()
 
-    def _make_result(self) -> QWidget:
+    def _make_result(self) -> None:
         self.footprint = FootprintView()
-        self.facts = FactGrid("drop_facts")
         self.retention = RetentionChart()
-        self.facts.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        result = QWidget()
-        column = QVBoxLayout(result)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(GRID_PX)
-        self._picture = QStackedWidget()
-        self._picture.addWidget(self.footprint)
-        self._picture.addWidget(self.retention)
         self.wheel = PourMap()
-        self.wheel.setMinimumSize(_LOWER_PX // 2, _LOWER_PX // 2)
-        self.wheel.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
-        self._picture.addWidget(self.wheel)
-        column.addWidget(self._picture, 1)
-        column.addWidget(self.facts)
-        return result
+        self.facts = FactGrid("drop_facts")
+        self.facts.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        self._picture = QStackedWidget()
+        for picture in (self.footprint, self.retention, self.wheel):
+            picture.setMinimumSize(_PICTURE_PX, _PICTURE_PX)
+            self._picture.addWidget(picture)
+        _take_what_is_left(self._picture, _PICTURE_PX)
 
     @property
     def parameters(self) -> ParametersPart:
         """The parameters; made when they are first wanted."""
         if self._parameters is None:
             self._parameters = ParametersPart(self._desk, GROUPS)
-            self._stack.addWidget(self._parameters)
+            _take_what_is_left(self._parameters, _EDITOR_PX)
+            self._parameters.hide()
+            self.body.addWidget(self._parameters, 1)
         return self._parameters
 
     def _turn(self, page: str) -> None:
-        self._stack.setCurrentWidget(self.parameters if page == "parameters" else self._result)
-        if page != "parameters":
+        has_parameters = page == "parameters"
+        self._picture.setVisible(not has_parameters)
+        self.facts.setVisible(not has_parameters)
+        if has_parameters or self._parameters is not None:
+            self.parameters.setVisible(has_parameters)
+        if not has_parameters:
             first = self.wheel if self._is_filling else self.footprint
             self._picture.setCurrentWidget(self.retention if page == "retention" else first)
 
@@ -135,6 +131,7 @@ class VerdictSide(SidePanel):
     def show_empty(self, sentence: str, button: str) -> None:
         """Show what will be here, and the button that leads there; an empty text leaves the button away."""
         self._verdict.setText(sentence)
+        self._details.hide()
         self._reason.hide()
         self._empty_button.setText(button)
         self._empty_button.setVisible(bool(button))
@@ -149,11 +146,14 @@ class VerdictSide(SidePanel):
         self._empty_button.hide()
         if found is None:
             self._verdict.setText(self._so_far(drop))
+            self._details.hide()
             self._reason.hide()
             self.omega.hide()
             self.footprint.clear()
         else:
-            self._verdict.setText(verdict_sentence(found))
+            headline, details = verdict_parts(found)
+            self._verdict.setText(headline)
+            say(self._details, details)
             say(self._reason, verdict_reason(found, drop.n_on_top))
             self.omega.set_values(found.omega, found.omega_threshold)
             self.omega.show()
@@ -232,5 +232,12 @@ class VerdictSide(SidePanel):
                 self.tr("Took"),
                 duration_text(drop.seconds),
                 self.tr("Computing time of the drop"),
+                is_beside=True,
             ),
         ]
+
+
+def _take_what_is_left(widget: QWidget, least_px: int) -> None:
+    """Let a widget be as high as there is space: by its size hint the panel would scroll before it has to."""
+    widget.setMinimumHeight(least_px)
+    widget.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Ignored)

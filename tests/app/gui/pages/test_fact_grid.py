@@ -26,3 +26,18 @@ def test_what_was_before_has_its_column_only_where_there_is_something_in_it(grid
 def test_a_fact_says_what_it_means(grid):
     grid.set_facts([Fact("Seed", "0", "Of all randomness")])
     assert {label.toolTip() for label in grid.findChildren(QLabel)} == {"Of all randomness"}
+
+
+def test_short_facts_share_a_row_unless_there_is_something_of_before(grid, qtbot):
+    def tops():
+        qtbot.wait(1)
+        return {label.text(): label.y() for label in grid.findChildren(QLabel)}
+
+    facts = [Fact("Holds", "312 candies"), Fact("Seed", "0"), Fact("Took", "1.2 s", is_beside=True)]
+    grid.resize(300, 100)
+    grid.show()
+    grid.set_facts(facts)
+    assert tops()["Took"] == tops()["Seed"] > tops()["Holds"]
+    assert words(grid, qtbot) == ["Holds", "312 candies", "Seed", "0", "Took", "1.2 s"]
+    grid.set_facts([Fact("Holds", "312 candies", before="300"), *facts[1:]])
+    assert tops()["Took"] > tops()["Seed"]
