@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QPoint, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QFont,
@@ -199,6 +202,23 @@ class StopButton(QPushButton):
             shortcut = QShortcut(QKeySequence(key), window)
             shortcut.setContext(Qt.ShortcutContext.ApplicationShortcut)
             shortcut.activated.connect(self.pressed)
+        self._watch()
+
+    @contextmanager
+    def deaf(self) -> Iterator[None]:
+        """While something is made: Python is asked about each of a page's thousands of events.
+
+        Nothing is missed: presses and keys wait until this thread reads its events again.
+        """
+        application = QCoreApplication.instance()
+        if application is not None:
+            application.removeEventFilter(self)
+        try:
+            yield
+        finally:
+            self._watch()
+
+    def _watch(self) -> None:
         application = QCoreApplication.instance()
         if application is not None:
             application.installEventFilter(self)

@@ -121,8 +121,9 @@ class MainWindow(QMainWindow):
         if key == WelcomePage.KEY:
             return self.welcome
         if key not in self._pages:
-            page = make_page(key, self.desk)
-            self._stack.addWidget(page)
+            with self.top_bar.stop.deaf():
+                page = make_page(key, self.desk)
+                self._stack.addWidget(page)
             self._pages[key] = page
         return self._pages[key]
 

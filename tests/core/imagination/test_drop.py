@@ -57,12 +57,12 @@ def test_a_hollow_that_one_layer_fills_keeps_candies_but_counts_none(height_m, i
     assert (omega("room_above") > 0.5) is is_counted
 
 
-@pytest.mark.parametrize("width_m", [0.032, 0.039, 0.045])
-def test_candies_find_into_a_small_round_cup(width_m):
+@pytest.mark.parametrize(("width_m", "n_drops"), [(0.032, 6), (0.039, 1), (0.045, 1)])
+def test_candies_find_into_a_small_round_cup(width_m, n_drops):
     """Its side has room for two candies: dropped at the edges of its box all of them would fall beside it.
 
-    The middle is that of eight drops: the ten candies that one drop leaves in the smallest cup lie 1 to 4 mm aside,
-    and which ones stay differs between processors.
+    In the smallest the middle is that of six drops: the 10 to 14 candies that one drop leaves there lie
+    1 to 4 mm aside, and which ones stay differs between processors.
     """
     outer_m, floor_m, height_m = width_m / 2, 0.002, 0.036
     wall = trimesh.creation.annulus(outer_m - 0.0015, outer_m, height_m, sections=48)
@@ -70,7 +70,9 @@ def test_candies_find_into_a_small_round_cup(width_m):
     bottom.apply_translation([0, 0, (floor_m - height_m) / 2])
     cup = join([TriangleMesh(np.array(one.vertices), np.array(one.faces)) for one in (wall, bottom)])
     model = CollisionModel.exact(cup)
-    found = [imagine_drop(here(apply_settings(Parameters(), {"seed": seed})), model) for seed in range(8)]
+    found = [
+        imagine_drop(here(apply_settings(Parameters(), {"seed": seed})), model) for seed in range(n_drops)
+    ]
     assert min(one.retained.sum() for one in found) >= 5
     middle_m = np.mean([one.footprint.center_m[:2] for one in found], axis=0)
     assert np.hypot(*middle_m) < 0.003
