@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from PySide6.QtCore import (
+    QItemSelection,
     QItemSelectionModel,
     QModelIndex,
     QPersistentModelIndex,
@@ -224,7 +225,8 @@ class ThumbnailGrid(QWidget):
         self._view.setModel(self._model)
         self._delegate = _Delegate(self._view)
         self._view.setItemDelegate(self._delegate)
-        self._view.selectionModel().currentChanged.connect(self._emit_selected)
+        # not currentChanged: a list that gets the focus calls its first entry the current one
+        self._view.selectionModel().selectionChanged.connect(self._emit_selected)
         self._view.activated.connect(lambda index: self.activated.emit(index.row()))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -269,9 +271,9 @@ class ThumbnailGrid(QWidget):
                 )
         self._view.viewport().update()
 
-    def _emit_selected(self, current: QModelIndex, _previous: QModelIndex) -> None:
-        if current.isValid():
-            self.selected.emit(current.row())
+    def _emit_selected(self, selected: QItemSelection, _deselected: QItemSelection) -> None:
+        for index in selected.indexes():
+            self.selected.emit(index.row())
 
     def _arrange(self) -> None:
         """Find the largest cell with which all fit; where none does, scroll with the smallest."""

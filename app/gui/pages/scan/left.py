@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QHBoxLayout, QListView, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from app.gui.pages.cell_model import ShownCell
@@ -67,7 +67,7 @@ class ScanLeft(QWidget):
         below.addWidget(self.grid)
         self._column.addLayout(below)
         self.view.view_picked.connect(self.view_picked)
-        self.grid.selected.connect(self._pick)
+        self.grid.selected.connect(self.view_picked)
 
     def fit_thumbnails(self) -> None:
         """Give the thumbnails as many rows as they need, after their number has changed."""
@@ -77,12 +77,6 @@ class ScanLeft(QWidget):
             columns = max((self.width() - GRID_PX) // _CELL_PX[0], 1)
             needed = -(-n // columns) * _CELL_PX[1]
             self.grid.setFixedHeight(round(max(min(needed, self.height() / 3), _SHARE * self.height())))
-
-    def _pick(self, index: int) -> None:
-        """A list that gets the focus calls its first entry the current one; that is nobody's choice."""
-        entries = self.grid.findChild(QListView)
-        if entries is not None and entries.selectionModel().isSelected(entries.model().index(index, 0)):
-            self.view_picked.emit(index)
 
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:
