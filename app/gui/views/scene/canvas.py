@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
 from PySide6.QtCore import Qt
@@ -60,6 +61,7 @@ def make_canvas(theme: Theme, parent: QWidget) -> Canvas:
     return SceneView(theme, parent)
 
 
+@lru_cache
 def has_opengl() -> bool:
     """Whether a widget can draw with OpenGL here; offscreen it could, but crashes when it is grabbed."""
     if QGuiApplication.platformName() in ("offscreen", "minimal"):
