@@ -35,8 +35,9 @@ from core.mesh_file import read_mesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
 from core.workers import RunHere, Task, WorkerPool
-from hardware.simulation.pour_outcome.candies import NO_CANDIES
-from hardware.simulation.pour_outcome.outcome import TableOutcome, in_object
+from hardware.simulation.pour_outcome.candies import NO_CANDIES, thickness_m
+from hardware.simulation.pour_outcome.counting import in_object
+from hardware.simulation.pour_outcome.outcome import TableOutcome
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
 from tests.benchmarks.capacity import OBJECTS
 
@@ -120,9 +121,9 @@ def _once_inside(placed: PlacedObject, outcome: TableOutcome, settings: OutcomeS
     """How many of the spilled candies had been inside before: they went over the rim, others beside it."""
     lost = ~(outcome.in_object | outcome.in_cup)
     stood = TriangleMesh(transform_points(outcome.T_given_stood, placed.true.vertices_m), placed.true.faces)
-    height_m, radius_m = placed.platform.height_m, settings.candy_diameter_m / 2
+    height_m, candy_m = placed.platform.height_m, (settings.candy_diameter_m, thickness_m(settings))
     inside = [
-        in_object(stood, positions.astype(float), height_m, 0.0, radius_m)
+        in_object(stood, positions.astype(float), height_m, 0.0, candy_m)
         for positions in outcome.recording.positions_m[:, lost]
     ]
     return int(np.any(inside, axis=0).sum())

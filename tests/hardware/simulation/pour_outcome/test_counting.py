@@ -3,14 +3,16 @@ import pytest
 
 from core.geometry import transform_points
 from core.mesh import TriangleMesh
+from core.mesh_topology import join
+from hardware.simulation.families.forms import slab
 from hardware.simulation.objects import builtin_object
-from hardware.simulation.pour_outcome.outcome import in_object
+from hardware.simulation.pour_outcome.counting import in_object
 from hardware.simulation.pour_outcome.playing import inside_cup
 from tests.hardware.simulation.pour_outcome.paths import CUP, UPRIGHT_RAD, turned
 
 
 def counted(mesh: TriangleMesh, *point_m: float, margin_m: float = 0.015) -> bool:
-    return bool(in_object(mesh, np.array([point_m]), 0.0, margin_m, 0.0066)[0])
+    return bool(in_object(mesh, np.array([point_m]), 0.0, margin_m, (0.0132, 0.007))[0])
 
 
 @pytest.mark.parametrize(
@@ -45,6 +47,22 @@ def test_a_crack_narrower_than_a_candy_spills_nothing() -> None:
 
     assert counted(floor_with_gap(0.006), 0.0, 0.001, 0.006)
     assert not counted(floor_with_gap(0.02), 0.0, 0.001, 0.006)
+
+
+@pytest.mark.parametrize(
+    ("opening_m", "is_in"), [(0.002, True), (0.0042, True), (0.0076, True), (0.02, False)]
+)
+def test_on_a_grid_lies_what_cannot_fall_through(opening_m: float, is_in: bool) -> None:
+    """Bars of 2 mm, most of it open; wherever in the grid the candy lies."""
+    bar_m, n = 0.002, 12
+    pitch_m = opening_m + bar_m
+    length_m, places_m = 2 * n * pitch_m, pitch_m * np.arange(-n, n + 1)
+    along_x = [slab((length_m, bar_m, bar_m), (0, place, 0.01)) for place in places_m]
+    along_y = [slab((bar_m, length_m, bar_m), (place, 0, 0.01)) for place in places_m]
+    grid = join(tuple(along_x + along_y))
+    for at in np.linspace(0.0, 1.0, 5):
+        over_m = (0.5 if opening_m > 0.0132 else at) * pitch_m
+        assert counted(grid, over_m, over_m / 2 + pitch_m / 4, 0.0155) is is_in
 
 
 def test_heaps_count_up_to_the_margin() -> None:
