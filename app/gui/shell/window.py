@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import linecache
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import QThread, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QKeyEvent
 from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
@@ -15,12 +17,11 @@ from app.gui.desk.jobs import RunningJob
 from app.gui.desk.memory import Memory
 from app.gui.desk.page_states import page_states, with_failure
 from app.gui.pages.page import Page, SplitView
-from app.gui.pages.registry import OTHERS, WORK, make_page, tab_facts
+from app.gui.pages.registry import OTHERS, WORK, import_page, make_page, tab_facts
 from app.gui.pages.welcome.page import WelcomePage
 from app.gui.shell.focus import FocusKeeper, press_by_enter
 from app.gui.shell.frame import TabList, TopBar
 from app.gui.shell.job_bar import JobBar, LogDrawer, MessageBar, next_step
-from app.gui.shell.preload import Preload
 from app.gui.shell.stop_dock import StopDock
 from app.gui.stop.messages import Answered
 from app.jobs.arm_events import StopDone
@@ -36,6 +37,24 @@ STARTED_BY_NEXT = ("scan", "reconstruction", "imagination", "robot")
 """Pages whose job starts with the click on "Next"."""
 ARM_PAGES = ("scan", "robot")
 """Pages whose work moves the arm: with a real one "Next" only shows them."""
+_OPENGL = "app.gui.views.scene.renderer"
+"""Where pyqtgraph and PyOpenGL come in; a scene itself imports it when the first one is made."""
+
+
+class Preload(QThread):
+    """Imports the slow modules in a thread once the window is on the screen.
+
+    PySide looks into the source of whatever is imported, and Python keeps what was looked into: 320,000 lines
+    in the end, 30 MB. They are given back after each import, so that the next one gets their memory.
+    """
+
+    @override
+    def run(self) -> None:
+        import_module(_OPENGL)
+        for key in (*WORK, *OTHERS):
+            linecache.clearcache()
+            import_page(key)
+        linecache.clearcache()
 
 
 class MainWindow(QMainWindow):
@@ -180,7 +199,7 @@ class MainWindow(QMainWindow):
             self._stop_dock.close()
         self.desk.close()
         self.memory.store_session(None)  # only now: a kill while the work ends is one, too
-        self._preload.close()
+        self._preload.wait()
         super().closeEvent(event)
 
     def _may_stop_work(self) -> bool:
