@@ -22,6 +22,7 @@ from app.gui.views.scene import (
 )
 from app.gui.views.scene.camera import Camera
 from app.gui.views.scene.candies import CANDY_COLORS, LOST_COLOR
+from app.gui.views.scene.canvas import has_opengl
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.view import SceneView
 from core.geometry import look_at
@@ -286,6 +287,15 @@ def test_a_view_that_moves_to_another_window_still_draws(qtbot):
         assert np.abs(middle(scene) - rgb(LIGHT, "kept")).max() < GAP
 
 
+@pytest.fixture
+def _asked_anew():
+    """Whether there is OpenGL is asked once in a program."""
+    has_opengl.cache_clear()
+    yield
+    has_opengl.cache_clear()
+
+
+@pytest.mark.usefixtures("_asked_anew")
 def test_without_a_context_a_sentence_is_shown(qtbot, monkeypatch):
     monkeypatch.setattr("app.gui.views.scene.canvas.QOpenGLContext.create", lambda _: False)
     scene = shown(qtbot, Scene3D())
