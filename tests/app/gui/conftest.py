@@ -52,6 +52,16 @@ def _garbage_is_collected_in_this_thread():
 
 
 @pytest.fixture
+def themed(qapp):
+    """Sizes depend on the program's own style sheet."""
+    from app.gui.theme import THEMES, apply_theme
+
+    apply_theme(qapp, THEMES["light"])
+    yield
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
 def forgetful():
     """Nothing is remembered from another test."""
     from PySide6.QtCore import QSettings

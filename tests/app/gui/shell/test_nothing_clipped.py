@@ -5,11 +5,12 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import QRect
 from PySide6.QtGui import QTextDocument
-from PySide6.QtWidgets import QAbstractButton, QAbstractScrollArea, QApplication, QLabel, QPushButton
+from PySide6.QtWidgets import QAbstractButton, QAbstractScrollArea, QLabel, QPushButton
 
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.shell.window import MainWindow
-from app.gui.theme import THEMES, apply_theme
+
+pytestmark = pytest.mark.usefixtures("themed")
 
 PAGES = (*WORK, *OTHERS)
 SIZES = ((1280, 800), (1920, 1080))
@@ -20,14 +21,6 @@ PARTS = {
 """Buttons that turn a part of a page over, by the page's key."""
 SLACK_PX = 1
 """Rounded font metrics."""
-
-
-@pytest.fixture(autouse=True)
-def _themed(qapp: QApplication):
-    """Sizes depend on the program's own style sheet."""
-    apply_theme(qapp, THEMES["light"])
-    yield
-    qapp.setStyleSheet("")
 
 
 def _plain(label: QLabel) -> str:

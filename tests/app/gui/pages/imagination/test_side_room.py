@@ -9,9 +9,10 @@ import pytest
 from PySide6.QtCore import QRect
 from PySide6.QtWidgets import QLabel, QPushButton, QScrollArea
 
-from app.gui.theme import THEMES, apply_theme
 from core.imagination.verdict import Verdict
 from core.parameters import apply_settings
+
+pytestmark = pytest.mark.usefixtures("themed")
 
 SIEVE = Verdict(
     0.034, 0.1, 1310.0, 1463.0, level_candies=740.0, level_ml=805.0, too_small_m=0.0066
@@ -19,14 +20,6 @@ SIEVE = Verdict(
 UNDECIDED = Verdict(0.034, 0.1, 1310.0, 1463.0, unseen_ml=1240.0, other_share=0.4)
 LEGIBLE_PX = 180
 """Of the footprint's height."""
-
-
-@pytest.fixture(autouse=True)
-def _themed(qapp):
-    """Sizes depend on the program's own style sheet."""
-    apply_theme(qapp, THEMES["light"])
-    yield
-    qapp.setStyleSheet("")
 
 
 @pytest.fixture

@@ -7,17 +7,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QFontMetrics
 from PySide6.QtWidgets import QListView
 
-from app.gui.theme import THEMES, apply_theme
 from app.gui.views.painting import tabular
 from app.gui.views.thumbnails import Thumbnail
 
-
-@pytest.fixture(autouse=True)
-def _themed(qapp):
-    """Sizes depend on the program's own style sheet."""
-    apply_theme(qapp, THEMES["light"])
-    yield
-    qapp.setStyleSheet("")
+pytestmark = pytest.mark.usefixtures("themed")
 
 
 @pytest.fixture
