@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import statistics
 import time
 
@@ -28,7 +29,7 @@ from app.gui.views.scene.view import SceneView
 from core.geometry import look_at
 from core.motion.arm_models import UR5
 from tests.awake import in_time
-from tests.benchmarks.scene_speed import frame_seconds, mug, replay_scene
+from tests.benchmarks.scene_speed import draw, falling, mug, replay_scene
 
 pytestmark = pytest.mark.gl
 CANDY = revolved_mesh([(0.0, 0.01), (0.02, 0.004), (0.02, -0.004), (0.0, -0.01)])
@@ -313,9 +314,14 @@ def test_a_large_mesh_does_not_stall_the_window(qtbot, scene):
     in_time(statistics.median(seconds), 0.06)
 
 
-def test_a_replay_runs_at_twenty_frames_a_second(qtbot):
-    """In the best of a few rounds: other programs may be busy meanwhile."""
+def test_each_step_of_a_replay_is_seen(qtbot):
+    """How many a second is up to the machine: `make scene-speed` holds that against its goal."""
     scene = replay_scene(10_000)
     qtbot.addWidget(scene)
     scene.resize(900, 600)
-    assert min(statistics.median(frame_seconds(scene, 15)) for _ in range(4)) < 1 / 20
+    scene.show()
+    spot, seen = falling(), []
+    for _ in range(5):
+        draw(scene, next(spot))
+        seen.append(scene.grab().toImage())
+    assert all(one != other for one, other in itertools.pairwise(seen))
