@@ -258,7 +258,7 @@ def test_imagined_with_a_high_threshold_a_mug_is_none_and_its_pictures_fill_the_
     assert not primary(page).isEnabled()
     qtbot.waitUntil(lambda: page.content is not former and desk.jobs.is_idle)
     assert text(page, "drop_verdict").startswith("Not an open container")
-    assert "(containers: over 90" in text(page, "drop_verdict")
+    assert "(containers: over 90" in text(page, "drop_details")
     assert "an open container" in text(page, "drop_reason")
     seen = []
 
