@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import ceil
 
 import numpy as np
@@ -47,28 +48,29 @@ def in_object(
         & (height < high[2] + rim_margin_m)
     )
     corners = mesh.vertices_m[mesh.faces]
+    reach_m = sum(candy_m) / 2
+    lows, highs = corners[..., :2].min(axis=1), corners[..., :2].max(axis=1)
     for candy in np.flatnonzero(inside).tolist():
-        inside[candy] = _is_carried(corners, positions_m[candy], candy_m)
+        center_m = positions_m[candy]
+        is_near = (lows <= center_m[:2] + reach_m) & (highs >= center_m[:2] - reach_m)
+        inside[candy] = _is_carried(corners[is_near.all(axis=1)], center_m, candy_m)
     return inside
 
 
-def _is_carried(corners_m: FloatArray, center_m: FloatArray, candy_m: tuple[float, float]) -> bool:
-    """Whether the faces with `corners_m` (F, 3, 3) are beneath a candy with its centre at (3,)."""
+def _is_carried(near: FloatArray, center_m: FloatArray, candy_m: tuple[float, float]) -> bool:
+    """Whether the faces with corners `near` (F, 3, 3) in m are beneath a candy with its centre at (3,)."""
     diameter_m, thickness_m = candy_m
-    reach_m = (diameter_m + thickness_m) / 2
-    away = (corners_m[..., :2].min(axis=1) > center_m[:2] + reach_m).any(axis=1)
-    away |= (corners_m[..., :2].max(axis=1) < center_m[:2] - reach_m).any(axis=1)
-    near = corners_m[~away]
     beneath = _surface_beneath(near, center_m[2], center_m[:2] + diameter_m / 2 * _ROUND)
     if 2 * beneath.sum() > len(beneath):
         return True
-    n = ceil(reach_m / _CELL_M)
+    n = ceil(sum(candy_m) / 2 / _CELL_M)
     cells = np.stack(np.meshgrid(*2 * [np.arange(-n, n + 1)], indexing="ij"), axis=-1)
     covered = _surface_beneath(near, center_m[2], center_m[:2] + _CELL_M * cells.reshape(-1, 2))
     taken = np.rint(_ways_down(diameter_m, thickness_m) / _CELL_M).astype(int) + n
     return bool(covered.reshape(cells.shape[:2])[taken[..., 0], taken[..., 1]].any(axis=1).all())
 
 
+@lru_cache
 def _ways_down(diameter_m: float, thickness_m: float) -> FloatArray:
     """Points (W, P, 2) of a candy on edge seen from above, turned, and moved by half its thickness."""
     places = thickness_m / 2 * np.vstack([(0.0, 0.0), _UNIT])

@@ -50,7 +50,7 @@ def test_a_crack_narrower_than_a_candy_spills_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("opening_m", "is_in"), [(0.002, True), (0.0042, True), (0.0076, True), (0.02, False)]
+    ("opening_m", "is_in"), [(0.002, True), (0.0042, True), (0.0076, True), (0.016, False), (0.02, False)]
 )
 def test_on_a_grid_lies_what_cannot_fall_through(opening_m: float, is_in: bool) -> None:
     """Bars of 2 mm, most of it open; wherever in the grid the candy lies."""
