@@ -9,7 +9,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication, QImage, QOpenGLContext
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.gui.theme import Theme
 from app.gui.views.scene.camera import Camera
 from app.gui.views.scene.parts import Layer
 
@@ -38,9 +37,6 @@ class BlankCanvas(QLabel):
     def set_camera(self, camera: Camera) -> None:
         """There is no picture to change."""
 
-    def set_theme(self, theme: Theme) -> None:
-        """The sentence follows the palette by itself."""
-
     def redraw(self) -> None:
         """There is no picture to change."""
 
@@ -52,13 +48,13 @@ class BlankCanvas(QLabel):
 Canvas: TypeAlias = "SceneView | BlankCanvas"
 
 
-def make_canvas(theme: Theme, parent: QWidget) -> Canvas:
+def make_canvas(parent: QWidget) -> Canvas:
     """Return a surface to draw on, as good as the screen allows."""
     if not has_opengl():
         return BlankCanvas(parent)
     from app.gui.views.scene.view import SceneView  # draws with OpenGL's library, and takes half a second
 
-    return SceneView(theme, parent)
+    return SceneView(parent)
 
 
 @lru_cache

@@ -10,7 +10,7 @@ from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QImage, QPalette, QResizeEvent
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.gui.theme import GRID_PX, theme_of
+from app.gui.theme import GRID_PX
 from app.gui.views.scene.arm import Arm, ArmLooks
 from app.gui.views.scene.candies import Candies
 from app.gui.views.scene.canvas import make_canvas
@@ -58,7 +58,7 @@ class Scene3D(QWidget):
         self._candies: dict[str, Candies] = {}
         self._boxes: dict[str, CropBox] = {}
         self._grounds: dict[str, Ground] = {}
-        self._canvas = make_canvas(theme_of(self), self)
+        self._canvas = make_canvas(self)
         self._navigator = Navigator(self._canvas, self._layers, self._boxes)
         self._navigator.picked.connect(self.picked)
         self._navigator.box_edited.connect(self.box_edited)
@@ -312,7 +312,7 @@ class Scene3D(QWidget):
         """Follow the theme."""
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
-            self._canvas.set_theme(theme_of(self))
+            self._canvas.redraw()  # in the theme of its window, as when it is shown
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         """Move the overlays to their corners, and keep what was fitted in view."""

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from shiboken6 import isValid
 from typing_extensions import override
 
-from app.gui.theme import Theme
+from app.gui.theme import theme_of
 from app.gui.views.scene.camera import Camera
 from app.gui.views.scene.drawing_thread import drawing_thread
 from app.gui.views.scene.overlay import paint_labels
@@ -34,7 +34,7 @@ class SceneView(QWidget):
     can_draw = True
     painted = Signal()
 
-    def __init__(self, theme: Theme, parent: QWidget) -> None:
+    def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.setObjectName("gl_view")
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
@@ -43,7 +43,6 @@ class SceneView(QWidget):
         self._renderer = Renderer()
         self.destroyed.connect(partial(_release, self._renderer))
         self._camera = Camera()
-        self._theme = theme
         self._numbers = count()
         self._layers: dict[str, tuple[int, Layer]] = {}
         self._picture: tuple[QImage, Snapshot] | None = None
@@ -68,11 +67,6 @@ class SceneView(QWidget):
     def set_camera(self, camera: Camera) -> None:
         """See from elsewhere."""
         self._camera = camera
-        self.redraw()
-
-    def set_theme(self, theme: Theme) -> None:
-        """Draw everything in another theme's colours."""
-        self._theme = theme
         self.redraw()
 
     def redraw(self) -> None:
@@ -112,7 +106,7 @@ class SceneView(QWidget):
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
-        painter.fillRect(event.rect(), self._theme.color("scene"))
+        painter.fillRect(event.rect(), theme_of(self).color("scene"))
         if self._picture is not None:
             image, snapshot = self._picture
             # Where the view has another size by now the picture stays in its middle until the next one comes.
@@ -154,7 +148,7 @@ class SceneView(QWidget):
     def _snapshot(self, is_still: bool) -> Snapshot:
         size = max(self.width(), 1), max(self.height(), 1)
         layers = {number: frozen(layer) for number, layer in self._layers.values()}
-        return Snapshot(layers, self._camera, self._theme, size, self.devicePixelRatioF(), is_still)
+        return Snapshot(layers, self._camera, theme_of(self), size, self.devicePixelRatioF(), is_still)
 
     def _paint_labels(self, painter: QPainter, snapshot: Snapshot) -> None:
         layers = [layer for layer in snapshot.layers.values() if layer.text and layer.is_visible]
