@@ -109,6 +109,25 @@ def test_the_theme_recolours_everything(scene):
     assert np.abs(picture[150, 200] - rgb(DARK, "kept")).max() < GAP
 
 
+def test_a_view_that_was_hidden_while_the_theme_changed_is_drawn_in_the_new_one(qtbot):
+    """The window's palette is another one by then, which is not told to what nobody sees."""
+    window = QMainWindow()
+    qtbot.addWidget(window)
+    pages = QStackedWidget()
+    window.setCentralWidget(pages)
+    scene = Scene3D()
+    pages.addWidget(QLabel())
+    pages.addWidget(scene)
+    window.resize(400, 300)
+    window.show()
+    pages.setCurrentWidget(scene)
+    assert (pixels(scene.grab_image())[5, 5] == rgb(LIGHT, "scene")).all()
+    pages.setCurrentIndex(0)
+    window.setPalette(palette_of(DARK))
+    pages.setCurrentWidget(scene)
+    assert (pixels(scene.grab_image())[5, 5] == rgb(DARK, "scene")).all()
+
+
 def test_hidden_and_removed_layers_are_not_drawn(scene):
     scene.set_mesh("cube", *CUBE)
     assert (middle(scene) != rgb(LIGHT, "scene")).any()
