@@ -59,7 +59,8 @@ from hardware.robots.ur.readying import (
 
 STOP_ANSWER_S = 0.1
 """A driver that has not answered to a stop after this time is not waited for: the dashboard stops the arm."""
-_CB3_CYCLE_S, _E_SERIES_CYCLE_S = 1 / 125, 1 / 500
+_CYCLE_S = 1 / 125
+"""A CB3's; an e-Series could do 500 a second, but what is streamed has one target every 8 ms."""
 _RESTS_WITHIN_S, _RELEASED_WITHIN_S = 0.3, 0.5
 
 _log = logging.getLogger(__name__)
@@ -309,14 +310,13 @@ class UR5Robot:
             refuse_taken(dashboard, seen, self.name)
             supply_tool(self._address, seen, self._tool, self.name)  # until here nothing was written
             self.controller_version = dashboard.version()
-            cycle_s = _E_SERIES_CYCLE_S if self.controller_version >= (5,) else _CB3_CYCLE_S
             is_held = self._tool.holds(seen)
             setup = Setup(
                 self._address,
                 vector_from_pose(self._T_flange_tool).tolist(),
                 self._payload_kg[is_held],
                 self._payload_center_m,
-                cycle_s,
+                _CYCLE_S,
                 self._tool.robotiq,
                 is_held,
             )

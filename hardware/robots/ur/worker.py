@@ -58,6 +58,8 @@ WATCHDOG_HZ = 3.5
 """Without a word for this time's inverse the controller ends the program, and the arm brakes to rest."""
 _KICK_S = 0.04
 _IDLE_S = 0.01
+_STANDING_S = 0.02
+"""How often an arm that stands is looked at: far sooner than anything about it has to be noticed."""
 _BRAKE_WITHIN_S = 0.12
 _BRAKE_LIMITS_RAD_S2 = 5.0, 30.0
 _REASON_S = 0.06
@@ -66,6 +68,22 @@ _LONGEST_REASON_S = 0.3
 """An arm whose power was switched off says so when its brakes have brought it to rest."""
 _TAKEN_S = 1.0
 _SAME = 1e-4
+_RECEIVED = (
+    "timestamp",
+    "actual_q",
+    "target_q",
+    "actual_qd",
+    "actual_TCP_pose",
+    "actual_TCP_force",
+    "speed_scaling",
+    "target_speed_fraction",
+    "robot_mode",
+    "safety_mode",
+    "runtime_state",
+    "actual_digital_output_bits",
+    "payload",
+)
+"""The fields that are read here; ur_rtde would ask for five times as many."""
 _HEARD_S = 0.2
 """The thread that makes the control calls loops within milliseconds; after this time it is stuck, ..."""
 _HANDSHAKE_S = 2.0
@@ -112,12 +130,14 @@ class _Worker:
         self._ask_watch_held(setup.is_held)
         self._due_s = float("inf")
         self._fresh = Event()
+        self._moves = Event()
         self._kicked_s = 0.0
+        rate_hz = 1 / self._cycle_s
         try:
-            self._receive = rtde_receive.RTDEReceiveInterface(setup.address)
+            self._receive = rtde_receive.RTDEReceiveInterface(setup.address, rate_hz, list(_RECEIVED))
             self._latest = self._read()
             raise_if(unsafe(self._latest))
-            self._control = rtde_control.RTDEControlInterface(setup.address)
+            self._control = rtde_control.RTDEControlInterface(setup.address, rate_hz)
             self._io = rtde_io.RTDEIOInterface(setup.address)
             self._set_up(setup)
         except RuntimeError as error:
@@ -128,8 +148,7 @@ class _Worker:
         Thread(target=self._publish, daemon=True).start()
         while True:
             self._due_s = time.monotonic() + _HEARD_S
-            is_fresh = self._fresh.wait(_IDLE_S)
-            self._fresh.clear()
+            is_fresh = self._wait()
             self._listen_for_program()
             while self._connection.poll():
                 request = self._connection.recv()
@@ -140,6 +159,15 @@ class _Worker:
                 self._step(self._motion)
             self._kick()
 
+    def _wait(self) -> bool:
+        """Until there may be something to do; whether a new state is it."""
+        if self._motion is None:
+            self._connection.poll(_STANDING_S)
+            return False
+        is_fresh = self._fresh.wait(_IDLE_S)
+        self._fresh.clear()
+        return is_fresh
+
     def _listen_for_program(self) -> None:
         """A program that stood still does not go on: somebody has to look at the arm first."""
         problem = self._program.problem()
@@ -149,7 +177,7 @@ class _Worker:
         self._refusal = (
             f"{problem}, so the arm was stopped; see that all is well, then recover the robot and plan anew."
         )
-        motion, self._motion = self._motion, None
+        motion = self._end_motion()
         if motion is not None:
             self._brake(motion)
             self._send(Ended(RobotStopped(self._refusal), motion.progress))
@@ -226,12 +254,20 @@ class _Worker:
         self._switched.clear()
         raise_if(self._lost_object())
         self._motion, self._rest_rad = motion, None
+        self._fresh.clear()  # what was seen before it began does not pace it
+        self._moves.set()
+
+    def _end_motion(self) -> Motion | None:
+        """Let nothing move from now on; returns what was under way."""
+        motion, self._motion = self._motion, None
+        self._moves.clear()
+        return motion
 
     def _stop(self, request: Request) -> None:
         """Stop for good: only a new worker moves again, so no request in flight can begin a move later."""
         self._is_over = True
         self._send(Reply(request.number, None))
-        motion, self._motion = self._motion, None
+        motion = self._end_motion()
         if motion is not None:
             self._brake(motion)
             stopped = RobotStopped("The arm was stopped before it arrived; plan its motion anew.")
@@ -260,7 +296,7 @@ class _Worker:
             error = wrong
         except RuntimeError as failed:
             error = MoveRefused(f"The controller refused ({failed}); recover the robot and plan anew.")
-        self._motion = None
+        self._end_motion()
         if error is not None:
             self._is_over = True
             if isinstance(error, TrackingLost):
@@ -344,6 +380,7 @@ class _Worker:
         """Pass every state on; when there are none any more, their age shows it to the parent."""
         pause_s = self._cycle_s / 4
         while True:
+            self._moves.wait(_STANDING_S)  # while something moves it does not wait
             if self._receive.getTimestamp() == self._latest["controller_s"]:
                 time.sleep(pause_s)
                 continue

@@ -28,6 +28,8 @@ _PACE_PER_S = 5.0
 _MOVING_RAD_S = 1e-4
 _TOO_FAST = 1.02
 """A joint that catches up is allowed 1 % more than its limit."""
+_STILL_RAD_S = np.zeros(6)
+_STILL_RAD_S.flags.writeable = False
 
 
 class Arm:
@@ -51,7 +53,7 @@ class Arm:
         """Begin at rest."""
         self.model = model
         self.joints_rad = self.target_rad = np.array(joints_rad, dtype=float)
-        self.speeds_rad_s = self.target_speeds_rad_s = np.zeros(6)
+        self.speeds_rad_s = self.target_speeds_rad_s = _STILL_RAD_S
         self.T_flange_tcp = np.eye(4)
         self.payload_kg = 0.0
         self.payload_center_m = (0.0, 0.0, 0.0)
@@ -201,11 +203,13 @@ class Arm:
 
         Once the motion is over a joint that is elsewhere stays there: nothing leaps when it comes free.
         """
+        if self.joints_rad is self.target_rad and self.speeds_rad_s is _STILL_RAD_S:
+            return
         reach = np.array(self.model.speed_limits_rad_s) * dt_s * 1.01
         reach[list(self.stuck)] = 0.0
         step = np.clip(self.target_rad - self.joints_rad, -reach, reach)
         is_exact = not self.stuck and np.array_equal(self.joints_rad + step, self.target_rad)
         self.joints_rad = self.target_rad if is_exact else self.joints_rad + step
-        self.speeds_rad_s = step / dt_s if step.any() else np.zeros(6)
+        self.speeds_rad_s = step / dt_s if step.any() else _STILL_RAD_S
         if self.is_idle and self.stuck:
             self.target_rad = self.joints_rad

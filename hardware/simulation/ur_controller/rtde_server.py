@@ -182,14 +182,22 @@ class RtdeLink(Link):
             self._journal.note("bad frame", message=str(error))
             self.abort()
 
-    def send_state(self, values: dict[str, Values], cycles: int) -> None:
-        """Send the fields, if it is time to; `cycles` have passed since the last call."""
-        if self._output is None or not self._is_started:
-            return
+    @property
+    def cycles_to_next(self) -> int:
+        """How many cycles from now on its next state is due."""
+        return self._every - self._cycle
+
+    def is_due(self, cycles: int) -> bool:
+        """Whether a state is to be sent now; `cycles` have passed since the last call."""
         self._cycle += cycles
         if self._cycle < self._every:
-            return
+            return False
         self._cycle %= self._every
+        return True
+
+    def send_state(self, values: dict[str, Values]) -> None:
+        """Send the fields that the client wants; it has begun to."""
+        assert self._output is not None, "it is served"
         flat = [number for name in self._output.names for number in values[name]]
         self.send(frame(Kind.DATA, b"\x01" + self._output.layout.pack(*flat)))
 

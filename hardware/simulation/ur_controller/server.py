@@ -27,6 +27,8 @@ from hardware.simulation.ur_controller.settings import ControllerSettings
 from hardware.simulation.ur_controller.text_servers import ControlLink, DashboardLink, ScriptLink
 
 _ADDRESS_TRIES = 50
+_UNWATCHED_CYCLES = 4
+"""Of a standing arm of which nobody wants states: other clients are answered as they come."""
 _LATE_S = 0.02
 _STOOD_STILL_S = 0.1
 """Beyond this much wall time the machine itself stood still: that is left out, for the watchdog, too."""
@@ -150,15 +152,24 @@ class ControllerServer:
             if due > 0:
                 done += due
                 self._send_state(due)
-            await asyncio.sleep(max(begin_s + (done + 1) * period_s - loop.time(), 0))
+            await asyncio.sleep(max(begin_s + (done + self._cycles_ahead()) * period_s - loop.time(), 0))
+
+    def _cycles_ahead(self) -> int:
+        """How many cycles from now on there is something to do: for a standing arm the next state to send."""
+        if not self._controller.arm.is_idle:
+            return 1
+        return min((link.cycles_to_next for link in self._served()), default=_UNWATCHED_CYCLES)
 
     def _send_state(self, cycles: int) -> None:
-        links = [link for link in self._network.links if isinstance(link, RtdeLink) and link.wanted]
+        links = [link for link in self._served() if link.is_due(cycles)]
         if not links:
             return
         values = self._outputs.refresh({name for link in links for name in link.wanted})
         for link in links:
-            link.send_state(values, cycles)
+            link.send_state(values)
+
+    def _served(self) -> list[RtdeLink]:
+        return [link for link in self._network.links if isinstance(link, RtdeLink) and link.wanted]
 
 
 def _is_loopback(address: str) -> bool:

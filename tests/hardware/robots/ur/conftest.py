@@ -1,9 +1,9 @@
-"""Benches, started once a file and put in order before each test: starting one takes a second."""
+"""Benches, put in order before each test, and kept as long as the next one wants the same kind."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, closing
 
 import pytest
 
@@ -11,52 +11,58 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.hardware.robots.ur.bench import HOME, VERSIONS, Bench, driver
 
 
-@contextmanager
-def connected(version: str, speed_up: float = 1.0) -> Iterator[Bench]:
-    with (
-        ControllerProcess(version=version, joints_rad=HOME, speed_up=speed_up) as controller,
-        driver(controller.address) as robot,
-    ):
-        yield Bench(controller, robot)
+class OneBench:
+    """The bench that is there now: also a standing one takes a part of a processor before all others."""
+
+    def __init__(self) -> None:
+        self._kind: tuple[str, float] | None = None
+        self._open = ExitStack()
+
+    def of(self, version: str, speed_up: float = 1.0) -> Bench:
+        """This kind, at home: the one that is there, or a new one in its place."""
+        if self._kind != (version, speed_up):
+            self.close()
+            controller = self._open.enter_context(
+                ControllerProcess(version=version, joints_rad=HOME, speed_up=speed_up)
+            )
+            self._bench = Bench(controller, self._open.enter_context(driver(controller.address)))
+            self._kind = version, speed_up
+        self._bench.put_in_order()
+        return self._bench
+
+    def close(self) -> None:
+        self._kind = None
+        self._open.close()
+
+
+@pytest.fixture(scope="module")
+def one_bench() -> Iterator[OneBench]:
+    with closing(OneBench()) as benches:
+        yield benches
 
 
 @pytest.fixture(scope="module", params=VERSIONS)
-def either_connected(request: pytest.FixtureRequest) -> Iterator[Bench]:
-    with connected(request.param) as bench:
-        yield bench
-
-
-@pytest.fixture(scope="module")
-def cb3_connected() -> Iterator[Bench]:
-    with connected("3.15") as bench:
-        yield bench
-
-
-@pytest.fixture(scope="module")
-def fast_connected() -> Iterator[Bench]:
-    with connected("3.15", speed_up=4.0) as bench:
-        yield bench
+def either_version(request: pytest.FixtureRequest) -> str:
+    """Of a module's scope, so that pytest runs the tests of one version together."""
+    return str(request.param)
 
 
 @pytest.fixture
-def either_bench(either_connected: Bench) -> Bench:
+def either_bench(one_bench: OneBench, either_version: str) -> Bench:
     """A CB3 at 125 Hz and an e-Series at 500 Hz, at home."""
-    either_connected.put_in_order()
-    return either_connected
+    return one_bench.of(either_version)
 
 
 @pytest.fixture
-def bench(cb3_connected: Bench) -> Bench:
+def bench(one_bench: OneBench) -> Bench:
     """A CB3, as the paper's arm has, at home."""
-    cb3_connected.put_in_order()
-    return cb3_connected
+    return one_bench.of("3.15")
 
 
 @pytest.fixture
-def fast_bench(fast_connected: Bench) -> Bench:
+def fast_bench(one_bench: OneBench) -> Bench:
     """Its clock runs faster, so that the 5 s of a protective stop, and switching on, are over sooner."""
-    fast_connected.put_in_order()
-    return fast_connected
+    return one_bench.of("3.15", speed_up=4.0)
 
 
 @pytest.fixture

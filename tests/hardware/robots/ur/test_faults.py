@@ -75,17 +75,6 @@ def test_an_emergency_stop(fast_bench: Bench) -> None:
     bench.works_again()
 
 
-@pytest.mark.parametrize(
-    ("kind", "fault"),
-    [("follow", "program stop"), ("move_joints", "program pause"), ("follow", "program pause")],
-)
-def test_a_program_that_is_stopped_or_paused(bench: Bench, kind: str, fault: str) -> None:
-    stops_with(bench, kind, fault, ProgramStopped, "was stopped or paused")
-    bench.dashboard("play")
-    assert bench.stays_where_it_is(), "the old move is gone"
-    bench.works_again()
-
-
 def test_a_safety_fault_is_for_the_panel(fast_bench: Bench) -> None:
     bench = fast_bench
     stops_with(bench, "move_joints", "safety fault", RobotNotReady, "'fault'.* panel")
@@ -95,9 +84,43 @@ def test_a_safety_fault_is_for_the_panel(fast_bench: Bench) -> None:
     bench.works_again()
 
 
-def test_power_that_is_switched_off(either_bench: Bench) -> None:
-    stops_with(either_bench, "move_joints", "power off", RobotNotReady, "power")
-    either_bench.works_again()
+def test_a_program_that_does_not_start_is_said_and_a_protective_stop_waits_for_its_time(
+    fast_bench: Bench,
+) -> None:
+    fast_bench.controller.command("protective stop")
+    began_s = fast_bench.truth()["time_s"]
+    wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
+    with pytest.raises(ProtectiveStop):
+        fast_bench.robot.move_joints([HOME, NEAR], 1.0, 1.0)
+    fast_bench.robot.recover()
+    assert fast_bench.truth()["time_s"] - began_s >= 5
+    fast_bench.controller.command("ignore uploads")
+    with pytest.raises(RobotNotReady, match="does not start"):
+        fast_bench.robot.recover()
+    fast_bench.controller.command("heed uploads")
+    fast_bench.works_again()
+
+
+def test_a_recovery_asked_for_before_the_worker_has_said_what_happened_ends_our_paused_program(
+    fast_bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(WorkerLink, "_take", lambda self, message: None)
+    fast_bench.controller.command("protective stop")
+    wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
+    monkeypatch.undo()
+    fast_bench.robot.recover()
+    fast_bench.works_again()
+
+
+@pytest.mark.parametrize(
+    ("kind", "fault"),
+    [("follow", "program stop"), ("move_joints", "program pause"), ("follow", "program pause")],
+)
+def test_a_program_that_is_stopped_or_paused(bench: Bench, kind: str, fault: str) -> None:
+    stops_with(bench, kind, fault, ProgramStopped, "was stopped or paused")
+    bench.dashboard("play")
+    assert bench.stays_where_it_is(), "the old move is gone"
+    bench.works_again()
 
 
 @KINDS
@@ -169,34 +192,6 @@ def test_a_slow_and_uneven_link_does_not_matter(bench: Bench) -> None:
         move.wait(1)
 
 
-def test_a_program_that_does_not_start_is_said_and_a_protective_stop_waits_for_its_time(
-    fast_bench: Bench,
-) -> None:
-    fast_bench.controller.command("protective stop")
-    began_s = fast_bench.truth()["time_s"]
-    wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
-    with pytest.raises(ProtectiveStop):
-        fast_bench.robot.move_joints([HOME, NEAR], 1.0, 1.0)
-    fast_bench.robot.recover()
-    assert fast_bench.truth()["time_s"] - began_s >= 5
-    fast_bench.controller.command("ignore uploads")
-    with pytest.raises(RobotNotReady, match="does not start"):
-        fast_bench.robot.recover()
-    fast_bench.controller.command("heed uploads")
-    fast_bench.works_again()
-
-
-def test_a_recovery_asked_for_before_the_worker_has_said_what_happened_ends_our_paused_program(
-    fast_bench: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(WorkerLink, "_take", lambda self, message: None)
-    fast_bench.controller.command("protective stop")
-    wait_until(lambda: not fast_bench.robot.state().safety_mode.may_move)
-    monkeypatch.undo()
-    fast_bench.robot.recover()
-    fast_bench.works_again()
-
-
 @KINDS
 @pytest.mark.parametrize(
     "fault", ["foreign still", "foreign moving", "foreign gap still", "foreign gap moving"]
@@ -240,3 +235,8 @@ def test_a_speed_slider_that_is_moved_is_no_fault(bench: Bench, slider: float) -
     time.sleep(0.5)
     bench.controller.command("slider 1")
     move.wait(HANG_S)
+
+
+def test_power_that_is_switched_off(either_bench: Bench) -> None:
+    stops_with(either_bench, "move_joints", "power off", RobotNotReady, "power")
+    either_bench.works_again()
