@@ -13,7 +13,7 @@ from core.errors import StageError
 from core.files import read_json, write_json
 from core.imagination.capacity.basin import ML
 from core.imagination.capacity.finding import find_ahead
-from core.imagination.capacity.imagine import imagine_capacity
+from core.imagination.capacity.imagine import imagine_capacity, with_hidden
 from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
 from core.imagination.drop import drop_task, imagine_drop
@@ -80,14 +80,18 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         settings.capacity_threshold,
         capacity.n_candies,
         float(capacity.bulk_ml),
-        capacity.n_level,
+        capacity.level_candies,
         capacity.level_ml,
         capacity.stand_in_diameter_m is not None,
         least_ml=capacity.least_ml,
         most_ml=capacity.most_ml,
         too_small_m=capacity.too_small_m,
     )
-    return Judgement(settings.omega_threshold, _read_otherwise(context, model, verdict), capacity)
+    verdict = _read_otherwise(context, model, verdict)
+    if verdict.is_container or verdict.is_undecided:
+        capacity = with_hidden(context, model, capacity)
+        verdict = replace(verdict, level_candies=capacity.level_candies, level_ml=capacity.level_ml)
+    return Judgement(settings.omega_threshold, verdict, capacity)
 
 
 def judge_ahead(context: ImaginationContext, model: CollisionModel) -> None:

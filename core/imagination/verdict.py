@@ -18,8 +18,9 @@ class Verdict:
         threshold: `capacity_share` above which it is an open container.
         n_candies: the same in candies.
         volume_ml: the same in ml.
-        level_candies: of `n_candies`, those below the rim; none in records of earlier versions.
-        level_ml: water that the true object holds as high, as near as can be told; none likewise.
+        level_candies: that the true object holds below its rim, as near as can be told; none in records of
+            earlier versions.
+        level_ml: the same in ml, which is water that stands as high; none likewise.
         has_stand_ins: whether larger balls were filled in place of candies: what they heap is no heap of
             candies.
         unseen_ml: volume behind its openings that no view saw; zero if that could not matter.

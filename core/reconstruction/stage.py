@@ -169,10 +169,10 @@ def _unseen_readings(found: _Found, solid: _ObjectField, support_m: float) -> Un
     if unseen_ml < SMALLEST_UNSEEN_ML:
         return None
     roomy = solid.freed(unseen.in_volume(room)).surface(support_m)
-    if not unseen.reaches_support(volume.voxel_m):
-        return UnseenReadings(unseen_ml, roomy, None)
-    through = unseen.in_volume(unseen.region | room) | unseen.below_region(volume)
-    return UnseenReadings(unseen_ml, roomy, solid.freed(through).surface(support_m))
+    through = unseen.way_through(volume)
+    return UnseenReadings(
+        unseen_ml, roomy, None if through is None else solid.freed(through).surface(support_m)
+    )
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,8 @@ _FAR_M = 1e3
 """Between layers: distances are taken within them."""
 THINNEST_WALL_M = 0.003
 """What the roomiest reading leaves of walls and floor that nobody saw from inside."""
+NARROWEST_HOLE_M = 0.006
+"""A way through the bottom is at least as wide: less than a candy is thick."""
 
 
 @dataclass(frozen=True)
@@ -53,32 +55,47 @@ class UnseenInside:
 
     def room(self, voxel_m: float) -> BoolArray:
         """Return (X, Y, Z) what may be hollow, with walls and floor as thin as they can be."""
+        room = self._behind_walls(voxel_m)
+        room[:, :, : int(np.ceil(THINNEST_WALL_M / voxel_m))] = False
+        return room
+
+    def way_through(self, volume: TsdfVolume) -> BoolArray | None:
+        """Return (X, Y, Z) of the volume what may be hollow down through the platform; none: nothing may be.
+
+        Something as thick as the narrowest hole must get from what a view looked through to the platform: a
+        ring at the foot of a wall whose inner side nobody saw is no hole, nor is the core of a floor.
+        """
+        hollow = self._behind_walls(volume.voxel_m)
+        if not self._reaches_support(hollow & self.region, volume.voxel_m):
+            return None
+        through = self.in_volume(hollow)
+        below = volume.weight[:, :, : self.first_layer] == 0
+        through[:, :, : self.first_layer] = hollow[:, :, :1] & below
+        return through
+
+    def _reaches_support(self, hollow: BoolArray, voxel_m: float) -> bool:
+        if hollow[:, :, 0].sum() * voxel_m**2 < SMALLEST_PATCH_M2:
+            return False
+        away_m = distance_transform_edt(hollow | self.free) * voxel_m - voxel_m / 2
+        centres = away_m > NARROWEST_HOLE_M / 2
+        reached = _connected_to(self.free & centres, centres)
+        return bool((reached & hollow)[:, :, 0].any())
+
+    def _behind_walls(self, voxel_m: float) -> BoolArray:
         within_layer = (voxel_m, voxel_m, _FAR_M)
         away_m = distance_transform_edt(~self.outside, sampling=within_layer)
         # Of a voxel as far away as this, half lies nearer.
-        room: BoolArray = (self.region | self.assumed) & (away_m > THINNEST_WALL_M + voxel_m / 2)
-        room[:, :, : int(np.ceil(THINNEST_WALL_M / voxel_m))] = False
-        return room
+        behind: BoolArray = (self.region | self.assumed) & (away_m > THINNEST_WALL_M + voxel_m / 2)
+        return behind
 
     def room_share(self, voxel_m: float) -> float:
         """Which share of all that may be hollow no view saw."""
         n_room = int(self.room(voxel_m).sum())
         return n_room / max(n_room + int(self.free.sum()), 1)
 
-    def reaches_support(self, voxel_m: float) -> bool:
-        """Whether so much of the region lies just above the platform that something may fall through."""
-        return bool(self.region[:, :, 0].sum() * voxel_m**2 > SMALLEST_PATCH_M2)
-
     def in_volume(self, mask: BoolArray) -> BoolArray:
         """Return a mask of these layers as one of the whole volume."""
         return np.pad(mask, ((0, 0), (0, 0), (self.first_layer, 0)))
-
-    def below_region(self, volume: TsdfVolume) -> BoolArray:
-        """Return (X, Y, Z) the volume's unseen voxels between the region and the platform."""
-        below = np.zeros(volume.weight.shape, dtype=np.bool_)
-        columns = self.region[:, :, :1]
-        below[:, :, : self.first_layer] = columns & (volume.weight[:, :, : self.first_layer] == 0)
-        return below
 
 
 def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenInside:

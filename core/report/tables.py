@@ -123,7 +123,7 @@ def retention_facts(capacity: Capacity | None, retention: Retention | None) -> d
     ]
     fill_mm, rim_mm = MM * capacity.fill_height_m, MM * capacity.rim_height_m
     return {
-        "Capacity, level with the rim": f"{capacity.n_level:.0f} candies, {capacity.level_ml:.0f} ml",
+        "Capacity, level with the rim": f"{capacity.level_candies:.0f} candies, {capacity.level_ml:.0f} ml",
         **_heap_facts(capacity),
         "Water capacity": f"{capacity.geometric_volume_ml:.0f} ml",
         "Fill height": f"{fill_mm:.0f} of {rim_mm:.0f} mm",

@@ -46,7 +46,10 @@ def find_beside(
 def find_ahead(context: ImaginationContext, model: CollisionModel) -> None:
     """Let idle processors find what the capacity of an object needs, whatever stays of a drop."""
     parameters = context.parameters
-    for surface, scale in ((model.surface, 1.0), (model.most_detailed, HALF)):
+    wanted = [(model.surface, 1.0), (model.most_detailed, HALF)]
+    if model.unseen is not None:
+        wanted.append((model.unseen.roomy, 1.0))
+    for surface, scale in wanted:
         task = _task(surface, scale * parameters.particle.diameter_m, parameters)
         context.spare.append((task, partial(context.ahead.keep, surface, task.arguments[1:])))
 

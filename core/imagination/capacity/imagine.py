@@ -62,10 +62,18 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
     found = _filled(context, model, drop, basin)
     if model.surface_error_m == 0 or not found.n_kept:
         return found
-    least_ml, most_ml = between_ml(found.volume_ml, basin, model.surface_error_m)
+    least_ml, most_ml = between_ml(found.filled_ml, basin, model.surface_error_m)
     if model.unseen is not None:
         return replace(found, least_ml=least_ml, unseen_ml=model.unseen.unseen_ml)
     return replace(found, least_ml=least_ml, most_ml=most_ml)
+
+
+def with_hidden(context: ImaginationContext, model: CollisionModel, found: Capacity) -> Capacity:
+    """Return the capacity with what the hollow holds more if all that no view saw of it is hollow."""
+    if model.unseen is None or not found.n_kept:
+        return found
+    roomy = basin_of(context, model.unseen.roomy, context.parameters.particle.diameter_m)
+    return replace(found, hidden_ml=max(roomy.candies_ml - found.candy_hollow_ml, 0.0))
 
 
 _INWARDS = 1 / 3
@@ -80,7 +88,7 @@ def between_ml(volume_ml: float, basin: Basin, error_m: float) -> tuple[float, f
     All of the hollow's boundary, its mouth included, lies further in or out by the surface's error.
 
     Args:
-        volume_ml: as imagined.
+        volume_ml: as told.
         basin: the hollow.
         error_m: how far the surface may lie from the true one.
     """
@@ -243,7 +251,7 @@ def _facts(
     lost = sum(filling.n_poured - filling.n_kept for filling in fillings)
     foot_m = float(surface.aabb_min_m[2])
     return Facts(
-        imagined_ml=volume_ml,
+        imagined_ml=basin.candies_ml if plan.stand_in.scale > 1 else volume_ml,
         heaped_ml=fmean([one.n_kept for one in fillings] or [0.0]) * per_particle - volume_ml,
         has_stand_ins=plan.stand_in.scale > 1,
         water_ml=basin.water_ml,
@@ -270,7 +278,7 @@ class Facts:
     """What is known of a filling, volumes in ml, lengths in m.
 
     Attributes:
-        imagined_ml: bulk volume of the candies that stay.
+        imagined_ml: bulk volume of the candies that fill it level.
         heaped_ml: bulk volume of the candies above the rim.
         has_stand_ins: whether larger balls were filled in place of candies.
         water_ml: geometric volume.

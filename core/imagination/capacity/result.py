@@ -41,7 +41,7 @@ class Capacity:
         n_kept: of these inside at the end.
         rim_height_m: from the inner floor to where candies run over; zero without a hollow.
         fill_height_m: from the inner floor to the level of `volume_ml`; zero without a hollow.
-        explanation: why `volume_ml` and `geometric_volume_ml` differ; empty where they agree.
+        explanation: why `filled_ml` and `geometric_volume_ml` differ; empty where they agree.
         heights_m: (K,) above the inner floor, rising from zero; empty without a hollow.
         volumes_ml: (K,) volume below each height.
         candies_per_ml: in bulk, in this object.
@@ -49,6 +49,8 @@ class Capacity:
         least_ml: level volume if the surface errs inwards as far as it may; none if it was not scanned.
         most_ml: the same outwards; none likewise, and where part of the inside was not seen.
         unseen_ml: of the inside, at least; zero if all was seen.
+        hidden_ml: what the hollow for candies holds more if all that no view saw of it is hollow; zero if all
+            was seen, and of what is no container either way.
         too_small_m: size of candies that would fall through its openings; none if half as large ones stay.
     """
 
@@ -73,6 +75,7 @@ class Capacity:
     least_ml: float | None = None
     most_ml: float | None = None
     unseen_ml: float = 0.0
+    hidden_ml: float = 0.0
     too_small_m: float | None = None
 
     @property
@@ -82,9 +85,25 @@ class Capacity:
 
     @property
     def level_ml(self) -> float:
-        """The true object's level volume, as near as can be told: what scans usually lose is added."""
-        lost_ml = 0.0 if self.least_ml is None else _OUTWARDS * (self.volume_ml - self.least_ml)
-        return self.volume_ml + lost_ml
+        """The true object's level volume, as near as can be told (decisions 0042 and 0045).
+
+        What scans usually lose is added, and what no view saw: hollows seldom end where a view does.
+        """
+        lost_ml = 0.0 if self.least_ml is None else _OUTWARDS * (self.filled_ml - self.least_ml)
+        return self.filled_ml + lost_ml + self.hidden_ml
+
+    @property
+    def level_candies(self) -> float:
+        """`level_ml` in candies."""
+        return self.level_ml * self.candies_per_ml
+
+    @property
+    def filled_ml(self) -> float:
+        """The hollow that is filled level: `volume_ml`, but where balls stand for candies all of the hollow.
+
+        A few large balls leave more of a narrow hollow empty than candies would.
+        """
+        return self.volume_ml if self.stand_in_diameter_m is None else self.candy_hollow_ml
 
     @property
     def bulk_ml(self) -> float:
@@ -106,9 +125,10 @@ class Capacity:
         if self.least_ml is None:
             return ""
         if self.most_ml is None:
-            return (
-                f"At least {self.least_ml:.0f} ml level; {self.unseen_ml:.0f} ml more inside were not seen."
-            )
+            said = f"At least {self.least_ml:.0f} ml level; "
+            if self.hidden_ml > 0:
+                return f"{said}{self.hidden_ml:.0f} ml more were not seen and count as hollow, too."
+            return f"{said}{self.unseen_ml:.0f} ml more inside were not seen."
         return f"As closely as the scan tells: {self.least_ml:.0f} to {self.most_ml:.0f} ml level."
 
     def level_of(self, n_candies: float) -> float:

@@ -11,6 +11,7 @@ from core.pipeline.in_memory import imagine
 from core.progress import Reporter
 from core.unseen_readings import UnseenReadings
 from core.workers import RunHere
+from tests.core.imagination.conftest import box
 
 FEW = {
     "containability.verdict": "capacity",
@@ -111,6 +112,20 @@ def test_the_unseen_does_not_matter_where_the_answer_stays(dish, few, pool):
     assert verdict.other_share == verdict.capacity_share
 
 
+def test_what_no_view_saw_of_a_hollow_is_told_with_it(dish, few, pool):
+    floor = box((0, 0, 0), (0.1, 0.06, 0.02)).translated(dish.aabb_min_m)
+    shallow = join([*dish.parts, floor])
+    hidden = CollisionModel.exact(shallow, UnseenReadings(60.0, dish.surface))
+    found = imagine(hidden, few, pool, Reporter())
+    seen = imagine(CollisionModel.exact(shallow), few, pool, Reporter())
+    verdict, capacity = found.containability.verdict, found.capacity
+    assert verdict.is_container and not verdict.is_undecided
+    assert seen.capacity.hidden_ml == 0 < capacity.hidden_ml
+    assert verdict.level_ml == pytest.approx(seen.capacity.level_ml + capacity.hidden_ml)
+    assert verdict.level_ml == pytest.approx(90 * 50 * 35 / 1000, rel=0.05)
+    assert verdict.n_candies == seen.containability.verdict.n_candies, "only what was seen is counted on"
+
+
 class Counting:
     """A pool that remembers what ran for which stage."""
 
@@ -134,8 +149,8 @@ def test_what_may_leak_is_dropped_on_beside_the_drop_itself_with_the_same_answer
 
     ahead, later = judged(True), judged(False)
     assert ahead[0] == later[0] and ahead[0].is_undecided
-    # The drop, what may leak, and the two hollows that any verdict asks for.
-    assert (ahead[1], later[1]) == ([4], [1, 1])
+    # The drop, what may leak, the two hollows that any verdict asks for, and that of what was not seen.
+    assert (ahead[1], later[1]) == ([5], [1, 1])
 
 
 def test_hollows_are_found_beside_the_drop_with_the_same_answer(dish, few, pool):
@@ -160,7 +175,7 @@ def test_nothing_is_begun_ahead_that_no_answer_asks_for(dish, pipe, few, pool):
         assert not context.spare
     context = ImaginationContext(few, pool, Reporter())
     judge_ahead(context, CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface)))
-    assert len(context.spare) == 2, "the hollows alone: no drop on what cannot leak"
+    assert len(context.spare) == 3, "the hollows alone: no drop on what cannot leak"
 
 
 def test_a_drop_that_was_made_ahead_is_that_of_its_surface_and_parameters(dish, dish_judged, few):

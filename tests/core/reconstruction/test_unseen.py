@@ -22,15 +22,36 @@ def test_an_unseen_shaft_may_be_hollow_but_for_walls_and_a_floor_as_thin_as_they
 
 
 def test_an_unseen_shaft_may_have_no_floor():
-    unseen = find_unseen_inside(shaft(0.1), platform_height_m=0.01)
-    assert unseen.reaches_support(VOXEL_M)
-    assert unseen.below_region(shaft(0.1))[:, :, : unseen.first_layer].sum() == 11 * 11 * unseen.first_layer
+    volume = shaft(0.1)
+    unseen = find_unseen_inside(volume, platform_height_m=0.01)
+    through = unseen.way_through(volume)
+    assert through is not None
+    assert (through[:, :, : unseen.first_layer].sum(axis=(0, 1)) == 11 * 11).all()
+    assert through[:, :, unseen.first_layer : 20].any(axis=2).sum() == 15 * 15, "but for a thin wall"
 
 
 def test_a_floor_that_was_seen_stays():
-    unseen = find_unseen_inside(shaft(0.1, floor_m=0.02), platform_height_m=0.0)
+    volume = shaft(0.1, floor_m=0.02)
+    unseen = find_unseen_inside(volume, platform_height_m=0.0)
     assert unseen.room(VOXEL_M).any()
-    assert not unseen.reaches_support(VOXEL_M)
+    assert unseen.way_through(volume) is None
+
+
+@pytest.mark.parametrize(("wide", "is_way"), [(1, False), (3, True)])
+def test_a_ring_at_the_foot_of_a_wall_is_a_way_through_where_a_candy_could_pass(wide, is_way):
+    volume = shaft(0.1)
+    steps = np.arange(31) - 15
+    across = np.maximum(abs(steps[:, None]), abs(steps))
+    seen = across <= 5 - wide
+    volume.weight[seen] = 1
+    volume.distance[seen, 4:] = 1.0
+    volume.distance[seen, :4] = -0.5
+    volume.weight[seen, :3] = 0  # the core of the floor
+    unseen = find_unseen_inside(volume, platform_height_m=0.0)
+    assert unseen.region[:, :, 0].sum() * VOXEL_M**2 > 1e-3, (
+        "much of what lies just above the platform is unseen"
+    )
+    assert (unseen.way_through(volume) is not None) == is_way
 
 
 def test_a_wall_that_was_seen_from_both_sides_is_as_thick_as_it_looks():

@@ -190,7 +190,9 @@ class VerdictSide(SidePanel):
         capacity, retention = drop.capacity, drop.retention
         if capacity is None:
             return []
-        held = self.tr("{n:.0f} candies, {ml:.0f} ml level").format(n=capacity.n_level, ml=capacity.level_ml)
+        held = self.tr("{n:.0f} candies, {ml:.0f} ml level").format(
+            n=capacity.level_candies, ml=capacity.level_ml
+        )
         water = self.tr("Filled from above until it overflowed, then perturbed. Water: {ml:.0f} ml.").format(
             ml=capacity.geometric_volume_ml
         )

@@ -9,10 +9,12 @@ from core.collision import CollisionModel
 from core.imagination.capacity.imagine import ARCH, imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.drop import imagine_drop
+from core.mesh_topology import join
 from core.unseen_readings import UnseenReadings
 from core.workers import RunHere
 from tests.core.imagination.capacity.conftest import open_box
 from tests.core.imagination.capacity.test_openings import funnel
+from tests.core.imagination.conftest import box
 from tests.core.imagination.here import here
 
 
@@ -45,21 +47,35 @@ def test_a_dish_holds_its_inside(filled):
 
 def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, filled, candies, few):
     assert filled.least_ml is None and filled.between == ""
-    assert filled.level_ml == filled.volume_ml
+    assert filled.level_ml == filled.candy_hollow_ml == pytest.approx(157.5, rel=0.03)
     error_m = 0.001
     scanned = fill(replace(exact_dish, surface_error_m=error_m), candies, few, RunHere())
     assert scanned.volume_ml == filled.volume_ml
     # Walls, floor and rim of the dish a millimetre further out.
     more_ml = 92 * 52 * 37 / 1000 - 90 * 50 * 35 / 1000
-    assert scanned.most_ml - scanned.volume_ml == pytest.approx(more_ml, rel=0.2)
-    assert scanned.volume_ml - scanned.least_ml == pytest.approx(more_ml / 3, rel=0.2)
-    assert scanned.volume_ml < scanned.level_ml < scanned.most_ml
-    assert scanned.level_ml - scanned.volume_ml == pytest.approx(more_ml / 5, rel=0.2)
+    assert scanned.most_ml - filled.level_ml == pytest.approx(more_ml, rel=0.2)
+    assert filled.level_ml - scanned.least_ml == pytest.approx(more_ml / 3, rel=0.2)
+    assert filled.level_ml < scanned.level_ml < scanned.most_ml
+    assert scanned.level_ml - filled.level_ml == pytest.approx(more_ml / 5, rel=0.2)
     assert scanned.between in scanned.remark
     unseen = UnseenReadings(40.0, exact_dish.surface)
     hidden = fill(replace(exact_dish, surface_error_m=error_m, unseen=unseen), candies, few, RunHere())
     assert (hidden.least_ml, hidden.most_ml) == (scanned.least_ml, None)
     assert "40 ml more inside were not seen" in hidden.between
+
+
+def test_few_large_balls_in_narrow_hollows_do_not_make_them_smaller(candies, few):
+    """Twelve compartments, 36 mm wide: of balls of 26 mm less than two thirds of what candies would fill."""
+    wide, wall, high = 0.036, 0.002, 0.05
+    step, x, y = wide + wall, 4 * (wide + wall) + wall, 3 * (wide + wall) + wall
+    across = [box((k * step, 0, 0), (k * step + wall, y, high)) for k in range(5)]
+    along = [box((0, k * step, 0), (x, k * step + wall, high)) for k in range(4)]
+    rack = CollisionModel.exact(join([box((0, 0, -wall), (x, y, 0)), *across, *along]))
+    found = fill(rack, candies, few, RunHere())
+    true_ml = 12 * 36 * 36 * 50 / 1000
+    assert found.stand_in_diameter_m is not None and found.volume_ml < 0.85 * true_ml
+    assert found.level_ml == pytest.approx(true_ml, rel=0.05)
+    assert found.level_candies == pytest.approx(found.level_ml * found.candies_per_ml)
 
 
 def test_levels(filled):

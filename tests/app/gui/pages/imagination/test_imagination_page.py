@@ -61,7 +61,8 @@ def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened,
     page = opened(mug_session)
     found = page.content.containability
     verdict, capacity = text(page, "drop_verdict"), page.content.capacity
-    assert verdict.startswith(f"Open container: level with its rim it holds {capacity.n_level:.0f} candies")
+    held = f"level with its rim it holds {capacity.level_candies:.0f} candies"
+    assert verdict.startswith(f"Open container: {held}")
     assert text(page, "drop_reason").startswith(
         f"By Omega an open container: {found.n_in} of {found.n_drop} dropped candies stayed"
     )
@@ -69,7 +70,7 @@ def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened,
     assert f"{found.n_in} of {found.n_drop}" in page.side.footprint.accessibleDescription()
     facts = {fact.title: fact.value for fact in page.side.facts.facts}
     assert facts["Seed"] == "0"
-    assert facts["Holds"] == f"{capacity.n_level:.0f} candies, {capacity.level_ml:.0f} ml level"
+    assert facts["Holds"] == f"{capacity.level_candies:.0f} candies, {capacity.level_ml:.0f} ml level"
     assert f"{np.degrees(page.content.retention.holds_rad):.0f}°" in facts["Tilted"]
     assert facts["Inside after"].startswith("drop ")
     assert facts["Inside after"].endswith(f" / push {found.n_in}")
