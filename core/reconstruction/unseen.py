@@ -68,9 +68,10 @@ class UnseenInside:
         hollow = self._behind_walls(volume.voxel_m)
         if not self._reaches_support(hollow & self.region, volume.voxel_m):
             return None
-        through = self.in_volume(hollow)
+        # A spout's wall may be thinner than the thinnest that is counted on: its way is taken for all of it.
+        through = self.in_volume(self.region | self.room(volume.voxel_m))
         below = volume.weight[:, :, : self.first_layer] == 0
-        through[:, :, : self.first_layer] = hollow[:, :, :1] & below
+        through[:, :, : self.first_layer] = self.region[:, :, :1] & below
         return through
 
     def _reaches_support(self, hollow: BoolArray, voxel_m: float) -> bool:
