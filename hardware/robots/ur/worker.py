@@ -59,7 +59,7 @@ WATCHDOG_HZ = 3.5
 _KICK_S = 0.04
 _IDLE_S = 0.01
 _STANDING_S = 0.02
-"""How often an arm that stands is looked at: far sooner than anything about it has to be noticed."""
+"""How often the thread that makes the control calls looks around while the arm stands."""
 _BRAKE_WITHIN_S = 0.12
 _BRAKE_LIMITS_RAD_S2 = 5.0, 30.0
 _REASON_S = 0.06
@@ -130,7 +130,6 @@ class _Worker:
         self._ask_watch_held(setup.is_held)
         self._due_s = float("inf")
         self._fresh = Event()
-        self._moves = Event()
         self._kicked_s = 0.0
         rate_hz = 1 / self._cycle_s
         try:
@@ -255,12 +254,10 @@ class _Worker:
         raise_if(self._lost_object())
         self._motion, self._rest_rad = motion, None
         self._fresh.clear()  # what was seen before it began does not pace it
-        self._moves.set()
 
     def _end_motion(self) -> Motion | None:
         """Let nothing move from now on; returns what was under way."""
         motion, self._motion = self._motion, None
-        self._moves.clear()
         return motion
 
     def _stop(self, request: Request) -> None:
@@ -380,7 +377,6 @@ class _Worker:
         """Pass every state on; when there are none any more, their age shows it to the parent."""
         pause_s = self._cycle_s / 4
         while True:
-            self._moves.wait(_STANDING_S)  # while something moves it does not wait
             if self._receive.getTimestamp() == self._latest["controller_s"]:
                 time.sleep(pause_s)
                 continue
