@@ -148,14 +148,16 @@ class ConnectedArm:
         """The status now.
 
         Raises:
-            RobotLost: it does not answer, and no job is about to find out why.
+            RobotLost: it does not answer, and nobody is about to find out why: no job, nor who has to make it
+                ready again, of which the driver may have let go meanwhile.
         """
         try:
             state = self.arm.robot.state()
             gripper = self.arm.gripper
             is_closed, is_holding, width_m = gripper.is_closed, gripper.is_holding, gripper.width_m
         except RobotError as error:
-            if isinstance(error, RobotLost) and not self.is_at_work and not self.must_back_off:
+            is_looked_after = self.is_at_work or self.must_recover or self.must_back_off
+            if isinstance(error, RobotLost) and not is_looked_after:
                 raise
             return ArmStatus(None, None, str(error), self.must_back_off)
         return ArmStatus(state, is_closed, self._problem(state), self.must_back_off, is_holding, width_m)

@@ -195,6 +195,7 @@ class Capacity(TypedDict):
     least_ml: NotRequired[FiniteFloat | None]
     most_ml: NotRequired[FiniteFloat | None]
     unseen_ml: NotRequired[FiniteFloat]
+    is_hollow_told: NotRequired[bool]
     hidden_ml: NotRequired[FiniteFloat]
     too_small_m: NotRequired[FiniteFloat | None]
 

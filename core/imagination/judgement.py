@@ -11,16 +11,13 @@ from typing import Any
 from core.collision import CollisionModel
 from core.errors import StageError
 from core.files import read_json, write_json
-from core.imagination.capacity.basin import ML
 from core.imagination.capacity.finding import find_ahead
-from core.imagination.capacity.imagine import imagine_capacity, with_hidden
+from core.imagination.capacity.imagine import hull_share, imagine_capacity, with_hidden
 from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
 from core.imagination.drop import drop_task, imagine_drop
 from core.imagination.results import Containability, Drop
 from core.imagination.verdict import Verdict
-from core.mesh import TriangleMesh
-from core.mesh_topology import hull_volume_m3
 
 JUDGEMENT_FILE = "judgement.json"
 
@@ -76,7 +73,7 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         return Judgement(settings.omega_threshold, _read_otherwise(context, model, nothing))
     capacity = imagine_capacity(context, model, drop)
     verdict = Verdict(
-        _share(model.surface, capacity),
+        hull_share(model.surface, capacity.bulk_ml),
         settings.capacity_threshold,
         capacity.n_candies,
         float(capacity.bulk_ml),
@@ -131,9 +128,4 @@ def capacity_share(context: ImaginationContext, model: CollisionModel, drop: Dro
     """Return the `capacity_share` of the verdict that `judge` reaches."""
     if drop.footprint is None:
         return 0.0
-    return _share(model.surface, imagine_capacity(context, model, drop))
-
-
-def _share(surface: TriangleMesh, capacity: Capacity) -> float:
-    hull_ml = ML * hull_volume_m3(surface)
-    return float(capacity.bulk_ml) / hull_ml if hull_ml > 0 else 0.0
+    return hull_share(model.surface, imagine_capacity(context, model, drop).bulk_ml)

@@ -42,6 +42,7 @@ class UnseenInside:
         frontier: unseen voxels of it at which known free space ends.
         region: the unseen that is joined to the frontier, the cores of walls and floors included.
         assumed: what is joined to the region and solid only because it lies just behind an outer side.
+        behind_walls: of region and assumed, what lies deeper within its layer than the thinnest wall.
         first_layer: of the volume, just above the platform.
     """
 
@@ -51,11 +52,12 @@ class UnseenInside:
     frontier: BoolArray
     region: BoolArray
     assumed: BoolArray
+    behind_walls: BoolArray
     first_layer: int
 
     def room(self, voxel_m: float) -> BoolArray:
         """Return (X, Y, Z) what may be hollow, with walls and floor as thin as they can be."""
-        room = self._behind_walls(voxel_m)
+        room = self.behind_walls.copy()
         room[:, :, : int(np.ceil(THINNEST_WALL_M / voxel_m))] = False
         return room
 
@@ -65,8 +67,7 @@ class UnseenInside:
         Something as thick as the narrowest hole must get from what a view looked through to the platform: a
         ring at the foot of a wall whose inner side nobody saw is no hole, nor is the core of a floor.
         """
-        hollow = self._behind_walls(volume.voxel_m)
-        if not self._reaches_support(hollow & self.region, volume.voxel_m):
+        if not self._reaches_support(self.behind_walls & self.region, volume.voxel_m):
             return None
         # A spout's wall may be thinner than the thinnest that is counted on: its way is taken for all of it.
         through = self.in_volume(self.region | self.room(volume.voxel_m))
@@ -81,13 +82,6 @@ class UnseenInside:
         centres = away_m > NARROWEST_HOLE_M / 2
         reached = _connected_to(self.free & centres, centres)
         return bool((reached & hollow)[:, :, 0].any())
-
-    def _behind_walls(self, voxel_m: float) -> BoolArray:
-        within_layer = (voxel_m, voxel_m, _FAR_M)
-        away_m = distance_transform_edt(~self.outside, sampling=within_layer)
-        # Of a voxel as far away as this, half lies nearer.
-        behind: BoolArray = (self.region | self.assumed) & (away_m > THINNEST_WALL_M + voxel_m / 2)
-        return behind
 
     def room_share(self, voxel_m: float) -> float:
         """Which share of all that may be hollow no view saw."""
@@ -120,7 +114,13 @@ def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenIn
     region = _connected_to(frontier, enclosed & ~seen)
     looked_through = enclosed & seen
     assumed = _only_behind_outer_sides(solid, region, looked_through, outside & seen, volume)
-    return UnseenInside(outside, enclosed, looked_through, frontier, region, assumed, first_layer)
+    within_layer = (volume.voxel_m, volume.voxel_m, _FAR_M)
+    away_m = distance_transform_edt(~outside, sampling=within_layer)
+    # Of a voxel as far away as this, half lies nearer.
+    behind_walls = (region | assumed) & (away_m > THINNEST_WALL_M + volume.voxel_m / 2)
+    return UnseenInside(
+        outside, enclosed, looked_through, frontier, region, assumed, behind_walls, first_layer
+    )
 
 
 def _only_behind_outer_sides(

@@ -25,6 +25,7 @@ from core.imagination.object_at_rest import ObjectAtRest
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.results import Drop
 from core.mesh import TriangleMesh
+from core.mesh_topology import hull_volume_m3
 from core.parameters import Parameters
 from core.workers import Task
 
@@ -73,7 +74,7 @@ def with_hidden(context: ImaginationContext, model: CollisionModel, found: Capac
     if model.unseen is None or not found.n_kept:
         return found
     roomy = basin_of(context, model.unseen.roomy, context.parameters.particle.diameter_m)
-    return replace(found, hidden_ml=max(roomy.candies_ml - found.candy_hollow_ml, 0.0))
+    return replace(found, hidden_ml=max(roomy.candies_ml - found.filled_ml, 0.0))
 
 
 _INWARDS = 1 / 3
@@ -214,7 +215,11 @@ def _result(
     volume = fmean([filling.n_level for filling in fillings] or [0.0]) * per_particle
     # Candies that lie against the rim reach above it: no more than the hollow is level.
     volume = min(volume, basin.candies_ml)
-    facts = _facts(plan, basin, fillings, per_particle, volume, surface, parameters)
+    bulk = _bulk_ml(plan, fillings, basin) if fillings else 0.0
+    is_container = hull_share(surface, bulk) > parameters.containability.capacity_threshold
+    is_hollow_told = plan.stand_in.scale > 1 and is_container
+    told = basin.candies_ml if is_hollow_told else volume
+    facts = _facts(plan, basin, fillings, told, bulk - volume, surface, parameters)
     heights = basin.heights_m - basin.heights_m[0] if len(basin.heights_m) else np.empty(0)
     return Capacity(
         n_candies=fmean(counts),
@@ -235,24 +240,32 @@ def _result(
         candies_per_ml=1 / per_candy,
         recording=fillings[0].recording if fillings else None,
         stand_in_diameter_m=plan.stand_in.particle.diameter_m if plan.stand_in.scale > 1 else None,
+        is_hollow_told=is_hollow_told,
     )
+
+
+def hull_share(surface: TriangleMesh, volume_ml: float) -> float:
+    """Return a volume as a share of that of a surface's convex hull; zero without one."""
+    hull_ml = ML * hull_volume_m3(surface)
+    return float(volume_ml / hull_ml) if hull_ml > 0 else 0.0
 
 
 def _facts(
     plan: FillPlan,
     basin: Basin,
     fillings: tuple[Filling, ...],
-    per_particle: float,
-    volume_ml: float,
+    filled_ml: float,
+    heaped_ml: float,
     surface: TriangleMesh,
     parameters: Parameters,
 ) -> Facts:
+    per_particle = bulk_ml(plan.stand_in.particle, basin.around)
     n = max(len(fillings), 1)
     lost = sum(filling.n_poured - filling.n_kept for filling in fillings)
     foot_m = float(surface.aabb_min_m[2])
     return Facts(
-        imagined_ml=basin.candies_ml if plan.stand_in.scale > 1 else volume_ml,
-        heaped_ml=fmean([one.n_kept for one in fillings] or [0.0]) * per_particle - volume_ml,
+        filled_ml=filled_ml,
+        heaped_ml=heaped_ml,
         has_stand_ins=plan.stand_in.scale > 1,
         water_ml=basin.water_ml,
         hollow_ml=basin.candies_ml,
@@ -278,7 +291,7 @@ class Facts:
     """What is known of a filling, volumes in ml, lengths in m.
 
     Attributes:
-        imagined_ml: bulk volume of the candies that fill it level.
+        filled_ml: what is told to be filled level.
         heaped_ml: bulk volume of the candies above the rim.
         has_stand_ins: whether larger balls were filled in place of candies.
         water_ml: geometric volume.
@@ -292,7 +305,7 @@ class Facts:
         candy_m: diameter of a candy.
     """
 
-    imagined_ml: float
+    filled_ml: float
     heaped_ml: float
     has_stand_ins: bool
     water_ml: float
@@ -309,18 +322,18 @@ class Facts:
 def explain(facts: Facts) -> str:
     """Return sentences on the difference; empty when the volumes agree and hardly anything is heaped."""
     heap = ""
-    if not facts.has_stand_ins and facts.heaped_ml > AGREE_SHARE * max(facts.imagined_ml, facts.water_ml):
+    if not facts.has_stand_ins and facts.heaped_ml > AGREE_SHARE * max(facts.filled_ml, facts.water_ml):
         where = "where nothing is closed all around" if np.isnan(facts.rim_m) else "above the rim"
         heap = f"Candies for {facts.heaped_ml:.0f} ml lie heaped {where}."
     return " ".join(sentence for sentence in (_difference(facts), heap) if sentence)
 
 
 def _difference(facts: Facts) -> str:
-    more = facts.imagined_ml - facts.water_ml
-    if abs(more) <= AGREE_SHARE * max(facts.imagined_ml, facts.water_ml):
+    more = facts.filled_ml - facts.water_ml
+    if abs(more) <= AGREE_SHARE * max(facts.filled_ml, facts.water_ml):
         return ""
     reasons = _of_more(facts, more) if more > 0 else _of_less(facts, -more)
-    said = f"The candies stand for {facts.imagined_ml:.0f} ml, water would be {facts.water_ml:.0f} ml: "
+    said = f"The candies stand for {facts.filled_ml:.0f} ml, water would be {facts.water_ml:.0f} ml: "
     return said + ("; ".join(reasons) or "neither gaps nor the shaking account for it") + "."
 
 
@@ -340,7 +353,7 @@ def _gap(facts: Facts) -> str:
 
 
 def _of_less(facts: Facts, less: float) -> list[str]:
-    if facts.imagined_ml == 0:
+    if facts.filled_ml == 0:
         return [
             "none of the candies that stay lies where water would"
             if facts.heaped_ml > 0

@@ -49,6 +49,8 @@ class Capacity:
         least_ml: level volume if the surface errs inwards as far as it may; none if it was not scanned.
         most_ml: the same outwards; none likewise, and where part of the inside was not seen.
         unseen_ml: of the inside, at least; zero if all was seen.
+        is_hollow_told: whether balls stood for candies, and what they filled makes a container: then all of
+            the hollow for candies is told. A few large balls leave more of a narrow one empty.
         hidden_ml: what the hollow for candies holds more if all that no view saw of it is hollow; zero if all
             was seen, and of what is no container either way.
         too_small_m: size of candies that would fall through its openings; none if half as large ones stay.
@@ -75,6 +77,7 @@ class Capacity:
     least_ml: float | None = None
     most_ml: float | None = None
     unseen_ml: float = 0.0
+    is_hollow_told: bool = False
     hidden_ml: float = 0.0
     too_small_m: float | None = None
 
@@ -99,11 +102,8 @@ class Capacity:
 
     @property
     def filled_ml(self) -> float:
-        """The hollow that is filled level: `volume_ml`, but where balls stand for candies all of the hollow.
-
-        A few large balls leave more of a narrow hollow empty than candies would.
-        """
-        return self.volume_ml if self.stand_in_diameter_m is None else self.candy_hollow_ml
+        """What is filled level, as told of the surface: `volume_ml`, or all of the hollow."""
+        return self.candy_hollow_ml if self.is_hollow_told else self.volume_ml
 
     @property
     def bulk_ml(self) -> float:

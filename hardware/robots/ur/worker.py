@@ -38,7 +38,6 @@ from hardware.robots.ur.connecting import refused_connection
 from hardware.robots.ur.heartbeat import Heartbeat
 from hardware.robots.ur.held_object import HeldObject
 from hardware.robots.ur.messages import (
-    FIELDS,
     RUNTIME_PLAYING,
     Connected,
     Ended,
@@ -51,6 +50,7 @@ from hardware.robots.ur.messages import (
     tool_outputs,
 )
 from hardware.robots.ur.motions import RESTING_RAD_S, Following, JointMoves, Motion, UsualLag, joints_at_rest
+from hardware.robots.ur.reading import RECEIVED, read_state
 
 _HANGS_S = 12
 """Later than the parent, which ends a worker that does not connect in time; this is for when it is gone."""
@@ -68,22 +68,6 @@ _LONGEST_REASON_S = 0.3
 """An arm whose power was switched off says so when its brakes have brought it to rest."""
 _TAKEN_S = 1.0
 _SAME = 1e-4
-_RECEIVED = (
-    "timestamp",
-    "actual_q",
-    "target_q",
-    "actual_qd",
-    "actual_TCP_pose",
-    "actual_TCP_force",
-    "speed_scaling",
-    "target_speed_fraction",
-    "robot_mode",
-    "safety_mode",
-    "runtime_state",
-    "actual_digital_output_bits",
-    "payload",
-)
-"""The fields that are read here; ur_rtde would ask for five times as many."""
 _HEARD_S = 0.2
 """The thread that makes the control calls loops within milliseconds; after this time it is stuck, ..."""
 _HANDSHAKE_S = 2.0
@@ -133,8 +117,8 @@ class _Worker:
         self._kicked_s = 0.0
         rate_hz = 1 / self._cycle_s
         try:
-            self._receive = rtde_receive.RTDEReceiveInterface(setup.address, rate_hz, list(_RECEIVED))
-            self._latest = self._read()
+            self._receive = rtde_receive.RTDEReceiveInterface(setup.address, rate_hz, list(RECEIVED))
+            self._latest = read_state(self._receive)
             raise_if(unsafe(self._latest))
             self._control = rtde_control.RTDEControlInterface(setup.address, rate_hz)
             self._io = rtde_io.RTDEIOInterface(setup.address)
@@ -176,7 +160,7 @@ class _Worker:
         self._refusal = (
             f"{problem}, so the arm was stopped; see that all is well, then recover the robot and plan anew."
         )
-        motion = self._end_motion()
+        motion, self._motion = self._motion, None
         if motion is not None:
             self._brake(motion)
             self._send(Ended(RobotStopped(self._refusal), motion.progress))
@@ -255,16 +239,11 @@ class _Worker:
         self._motion, self._rest_rad = motion, None
         self._fresh.clear()  # what was seen before it began does not pace it
 
-    def _end_motion(self) -> Motion | None:
-        """Let nothing move from now on; returns what was under way."""
-        motion, self._motion = self._motion, None
-        return motion
-
     def _stop(self, request: Request) -> None:
         """Stop for good: only a new worker moves again, so no request in flight can begin a move later."""
         self._is_over = True
         self._send(Reply(request.number, None))
-        motion = self._end_motion()
+        motion, self._motion = self._motion, None
         if motion is not None:
             self._brake(motion)
             stopped = RobotStopped("The arm was stopped before it arrived; plan its motion anew.")
@@ -293,7 +272,7 @@ class _Worker:
             error = wrong
         except RuntimeError as failed:
             error = MoveRefused(f"The controller refused ({failed}); recover the robot and plan anew.")
-        self._end_motion()
+        self._motion = None
         if error is not None:
             self._is_over = True
             if isinstance(error, TrackingLost):
@@ -380,7 +359,7 @@ class _Worker:
             if self._receive.getTimestamp() == self._latest["controller_s"]:
                 time.sleep(pause_s)
                 continue
-            raw = self._read()
+            raw = read_state(self._receive)
             raw["progress"] = 0.0 if self._motion is None else self._motion.progress
             raw["due_s"] = self._due_s
             self._latest = raw
@@ -388,22 +367,3 @@ class _Worker:
             if self._motion is None and not self._is_over:
                 self._watch_rest(raw)
             self._fresh.set()
-
-    def _read(self) -> AnyArray:
-        """One state of `FIELDS`; read again when a new one came in the middle of it."""
-        receive = self._receive
-        raw = np.zeros((), FIELDS)
-        while raw["controller_s"] != (stamp_s := receive.getTimestamp()) or not stamp_s:
-            raw["controller_s"] = stamp_s
-            raw["time_s"] = time.monotonic()
-            raw["joints_rad"] = receive.getActualQ()
-            raw["target_joints_rad"] = receive.getTargetQ()
-            raw["joint_speeds_rad_s"] = receive.getActualQd()
-            raw["tool_pose"] = receive.getActualTCPPose()
-            raw["speed_scaling"] = receive.getSpeedScalingCombined()
-            raw["robot_mode"] = receive.getRobotMode()
-            raw["safety_mode"] = receive.getSafetyMode()
-            raw["runtime_state"] = receive.getRuntimeState()
-            raw["output_bits"] = receive.getActualDigitalOutputBits()
-            raw["tool_force_n"] = np.linalg.norm(receive.getActualTCPForce()[:3])
-        return raw

@@ -293,6 +293,8 @@ def test_a_paused_program_of_somebody_else_is_named_before_recovering_ends_it(ar
         assert pending.step is ReadyStep.END_PROGRAM
         assert "PAUSED weld.urp" in pending.sentence
         assert json.loads(controller.command("state"))["runtime_state"] == "PAUSED"
+        for _ in range(3):  # whoever is asked takes longer than the next status
+            assert "recover" in arm.status().problem
         assert arm.do(ArmWork.recover, pending.step) is None
         assert arm.status().problem == ""
         arm.do(ArmWork.disconnect)

@@ -4,7 +4,7 @@ from math import nan
 from core.imagination.capacity.imagine import Facts, explain
 
 AGREEING = Facts(
-    imagined_ml=300,
+    filled_ml=300,
     heaped_ml=0,
     has_stand_ins=False,
     water_ml=310,
@@ -21,7 +21,7 @@ AGREEING = Facts(
 
 def test_nothing_is_said_where_the_volumes_agree():
     assert explain(AGREEING) == ""
-    assert explain(replace(AGREEING, imagined_ml=0, water_ml=0, hollow_ml=0)) == ""
+    assert explain(replace(AGREEING, filled_ml=0, water_ml=0, hollow_ml=0)) == ""
 
 
 def test_more_than_water_by_a_gap():
@@ -34,12 +34,12 @@ def test_more_than_water_by_a_gap():
 def test_a_heap():
     assert explain(replace(AGREEING, heaped_ml=90)) == "Candies for 90 ml lie heaped above the rim."
     assert explain(replace(AGREEING, heaped_ml=90, has_stand_ins=True)) == "", "balls heap otherwise"
-    flat = replace(AGREEING, imagined_ml=0, water_ml=0, heaped_ml=9, rim_m=nan)
+    flat = replace(AGREEING, filled_ml=0, water_ml=0, heaped_ml=9, rim_m=nan)
     assert "nothing is closed all around" in explain(flat)
 
 
 def test_less_than_water():
-    less = replace(AGREEING, imagined_ml=100)
+    less = replace(AGREEING, filled_ml=100)
     assert "too narrow for a candy" in explain(replace(less, narrow_ml=150))
     assert "take off candies for 180 ml" in explain(replace(less, shaken_off_ml=180))
     assert "50 % of the candies lost left lower than the rim" in explain(replace(less, left_below=0.5))
@@ -47,10 +47,10 @@ def test_less_than_water():
 
 
 def test_no_candy_where_water_is():
-    none = replace(AGREEING, imagined_ml=0)
+    none = replace(AGREEING, filled_ml=0)
     assert "no candy stays" in explain(none)
     assert "none of the candies that stay lies where water would" in explain(replace(none, heaped_ml=9))
 
 
 def test_an_unexplained_difference_is_said_to_be_one():
-    assert "neither" in explain(replace(AGREEING, imagined_ml=100))
+    assert "neither" in explain(replace(AGREEING, filled_ml=100))

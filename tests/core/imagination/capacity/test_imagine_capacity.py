@@ -78,6 +78,16 @@ def test_few_large_balls_in_narrow_hollows_do_not_make_them_smaller(candies, few
     assert found.level_candies == pytest.approx(found.level_ml * found.candies_per_ml)
 
 
+def test_of_what_is_no_container_it_is_told_what_stayed(candies, few):
+    """A block with a recess for 85 ml, 7 % of its bulk."""
+    edges = [box((0, 0, 0.08), (0.12, 0.005, 0.087)), box((0, 0.115, 0.08), (0.12, 0.12, 0.087))]
+    edges += [box((0, 0, 0.08), (0.005, 0.12, 0.087)), box((0.115, 0, 0.08), (0.12, 0.12, 0.087))]
+    block = CollisionModel.exact(join([box((0, 0, 0), (0.12, 0.12, 0.08)), *edges]))
+    found = fill(block, candies, few, RunHere())
+    assert found.stand_in_diameter_m is not None and not found.is_hollow_told
+    assert found.level_ml == found.volume_ml < found.candy_hollow_ml
+
+
 def test_levels(filled):
     levels = [filled.level_of(n) for n in range(0, 300, 10)]
     assert levels[0] == 0
