@@ -1,6 +1,8 @@
 """A corner of the checked board, touched with the hand's tip: read, kept, and said with the check."""
 
 import json
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +10,7 @@ import pytest
 from app.operations.calibration.cell_file import new_cell
 from app.operations.calibration.check import check_cell, simulated_place
 from app.operations.calibration.hand_eye import calibrate_cell
-from app.operations.calibration.provenance import RESULT
+from app.operations.calibration.provenance import RESULT, calibration_folder, latest_result
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.table import measure_table
 from app.operations.calibration.touch import TOUCHES, read_touch, read_touches
@@ -38,11 +40,24 @@ def calibrated(tmp_path_factory):
     return path
 
 
+@pytest.fixture(scope="module")
+def checked_once(calibrated, tmp_path_factory):
+    """The calibrated cell with its check, which takes a while; every test has a copy."""
+    path = copied(calibrated, tmp_path_factory.mktemp("checked"))
+    check_cell(path, Reporter(), None, lambda: None)
+    return path
+
+
 @pytest.fixture
-def checked(calibrated):
-    folder = check_cell(calibrated, Reporter(), None, lambda: None).folder
-    yield calibrated, folder
-    undo(calibrated, "check")
+def checked(checked_once, tmp_path):
+    path = copied(checked_once, tmp_path)
+    return path, latest_result(path, "check")[0]
+
+
+def copied(path, folder):
+    """A cell's file in another folder, with what was kept of its calibration."""
+    shutil.copytree(calibration_folder(path), calibration_folder(folder / path.name))
+    return Path(shutil.copy(path, folder))
 
 
 def check_step(path):

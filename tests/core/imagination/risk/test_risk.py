@@ -150,8 +150,13 @@ def test_a_clean_first_cup_is_no_try_of_the_whole_amount(two_cups):
 
 @pytest.fixture(scope="module")
 def doubtful(dish, quick, pool):
-    """100 candies for a dish that holds 119: heaped at the stream, some go over its wall."""
-    settings = SMALL_CANDIES | {"risk.n_tries": 8, "risk.wanted_clean": 0.7, "pouring.n_pour": 100}
+    """100 candies for a dish that holds 119, from one side: heaped at the stream, some go over its wall."""
+    settings = SMALL_CANDIES | {
+        "risk.n_tries": 8,
+        "risk.wanted_clean": 0.7,
+        "pouring.n_pour": 100,
+        "pouring.theta_fixed_rad": 0.0,
+    }
     return imagine(dish, apply_settings(quick, settings), pool, Reporter())
 
 
