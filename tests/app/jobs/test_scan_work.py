@@ -26,7 +26,7 @@ from hardware.simulation.ur_controller.process import ControllerProcess
 from tests.app.jobs.hosts import ListenedHost
 from tests.awake import within
 
-pytestmark = [pytest.mark.system, pytest.mark.punctual]
+pytestmark = pytest.mark.system
 
 N_VIEWS = 5
 NOTHING_MORE = ScanRequest()
@@ -146,6 +146,7 @@ def test_a_scan_publishes_its_arm_views_and_mesh_in_order(scanning):
     assert meshes[-1].faces.max() < len(meshes[-1].vertices_m)
 
 
+@pytest.mark.punctual
 def test_the_arm_is_seen_moving_and_the_images_are_those_of_one_that_jumps(scanning, tmp_path):
     scanning.start()
     assert isinstance(scanning.end(), Finished)
@@ -170,6 +171,7 @@ def test_a_paused_scan_holds_and_goes_on(scanning):
     assert len(scanning.views()) == N_VIEWS
 
 
+@pytest.mark.punctual
 def test_a_cancelled_scan_ends_within_a_second_and_is_continued(scanning):
     scanning.start()
     scanning.until_views(2)
@@ -196,6 +198,7 @@ def taken(scanning):
     return [record.view.name for record in kept if record.has_image]
 
 
+@pytest.mark.punctual
 def test_stop_halts_the_arm_and_nothing_goes_on(scanning):
     scanning.start()
     scanning.wait(is_moving)
@@ -286,6 +289,7 @@ def test_what_cannot_be_scanned_is_a_sentence(scanning):
     assert not scanning.of(ArmConnected)
 
 
+@pytest.mark.punctual
 def test_a_real_arm_waits_until_somebody_has_seen_its_route(process, cell, tmp_path):
     pytest.importorskip("rtde_control")
     with ControllerProcess(joints_rad=cell.robot.home_rad, speed_up=6.0) as controller:
