@@ -1,8 +1,6 @@
 """A corner of the checked board, touched with the hand's tip: read, kept, and said with the check."""
 
 import json
-import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +8,7 @@ import pytest
 from app.operations.calibration.cell_file import new_cell
 from app.operations.calibration.check import check_cell, simulated_place
 from app.operations.calibration.hand_eye import calibrate_cell
-from app.operations.calibration.provenance import RESULT, calibration_folder, latest_result
+from app.operations.calibration.provenance import RESULT, latest_result
 from app.operations.calibration.steps import StepState, enter_board, steps
 from app.operations.calibration.table import measure_table
 from app.operations.calibration.touch import TOUCHES, read_touch, read_touches
@@ -25,6 +23,7 @@ from hardware.cell import read_cell
 from hardware.cell.calibrating import simulated_set_up
 from hardware.simulation.board_view import lying_board
 from hardware.simulation.touching import joints_on_point
+from tests.app.sessions import copied
 
 TIP_M = np.array([0.01, 0.0, 0.21])
 
@@ -43,21 +42,15 @@ def calibrated(tmp_path_factory):
 @pytest.fixture(scope="module")
 def checked_once(calibrated, tmp_path_factory):
     """The calibrated cell with its check, which takes a while; every test has a copy."""
-    path = copied(calibrated, tmp_path_factory.mktemp("checked"))
+    path = copied(calibrated.parent, tmp_path_factory.mktemp("checked") / "cells") / calibrated.name
     check_cell(path, Reporter(), None, lambda: None)
     return path
 
 
 @pytest.fixture
 def checked(checked_once, tmp_path):
-    path = copied(checked_once, tmp_path)
+    path = copied(checked_once.parent, tmp_path / "cells") / checked_once.name
     return path, latest_result(path, "check")[0]
-
-
-def copied(path, folder):
-    """A cell's file in another folder, with what was kept of its calibration."""
-    shutil.copytree(calibration_folder(path), calibration_folder(folder / path.name))
-    return Path(shutil.copy(path, folder))
 
 
 def check_step(path):
