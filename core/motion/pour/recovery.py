@@ -90,7 +90,8 @@ def check_rejoining(cell: PourCell, target: PourTarget, moves: Sequence[PlannedM
             )
         except MotionError as error:
             raise MotionError(
-                f"The arm is beside its planned path, and the way to it is not clear: {error}"
+                f"The arm is beside its planned path, and the way to it is not clear: {error} Take the cup "
+                "out of the hand by hand and plan from here."
             ) from error
 
 
