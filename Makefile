@@ -7,6 +7,8 @@ QUICK = tests/core/parameters tests/core/session tests/core/evaluation tests/cor
 	tests/hardware/cell tests/test_no_front_end.py
 OFFSCREEN = env -u DISPLAY -u WAYLAND_DISPLAY QT_QPA_PLATFORM=offscreen OPENBLAS_NUM_THREADS=1 .venv/bin/python -m pytest
 TWO_AT_A_TIME = -n 2 --dist loadfile --no-loadscope-reorder
+# Compiled sources are kept, whatever the environment says: tests start hundreds of processes that import them.
+export PYTHONDONTWRITEBYTECODE =
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
 .PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye calibrated-scans calibration-choice decision drift pour-plans pour-faults pour-soak fuzz kills scene-speed stop-latency window-start window-tour window-kills screenshots train-appearance own-kinematics window-load film clean
