@@ -146,6 +146,7 @@ def test_a_mesh_of_five_million_faces_is_refused_at_once(tmp_path, refused):
     assert "5,000,000 faces" in refused("imagine", path)
 
 
+@pytest.mark.system
 def test_a_non_manifold_mesh_is_scanned_and_judged_with_a_warning(tmp_path, poursight):
     path = box_file(tmp_path / "fin.obj")
     path.write_text(path.read_text() + "v 0.04 0.04 0.12\nf 5 7 9\n")

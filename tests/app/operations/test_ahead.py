@@ -45,6 +45,7 @@ def test_who_stops_the_scan_does_not_wait(kept):
         raise Cancelled("somebody stopped it")
 
 
+@pytest.mark.system
 def test_the_process_that_imagines_uses_its_idle_time_and_a_job_comes_first(kept, tmp_path):
     listened = ListenedHost(SessionWork, "imagines")
     try:

@@ -100,6 +100,7 @@ def test_a_pour_that_the_arm_cannot_make_is_refused_with_the_reason(session, mot
     assert str(refusal.value).endswith("Choose another one, or withdraw the choice.")
 
 
+@pytest.mark.system
 def test_what_was_chosen_among_other_pours_does_not_count(session, motions):
     wanted = another(motions, is_feasible=True)
     arm_commands.choose(session, wanted.i, wanted.j, WHY)

@@ -90,6 +90,7 @@ def test_another_seed_gives_another_drop(dish_imagined, dish, quick, pool):
     assert other.containability.omega == pytest.approx(dish_imagined.containability.omega, abs=0.1)
 
 
+@pytest.mark.system
 def test_replayed_pours_agree_with_cup_and_object_together(dish, quick, pool):
     """Over cells where some candies miss; the seed noise of one cell is the spread over the packings."""
     parameters = apply_settings(quick, {"pouring.n_pour": 40, "pouring.n_packings": 4})

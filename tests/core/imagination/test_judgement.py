@@ -105,6 +105,7 @@ def test_a_dish_whose_bottom_nobody_saw_may_be_a_pipe(dish, pipe, few, pool):
     assert found.grid is None, "nothing is poured into what may be a pipe"
 
 
+@pytest.mark.system
 def test_the_unseen_does_not_matter_where_the_answer_stays(dish, few, pool):
     hidden = CollisionModel.exact(dish.surface, UnseenReadings(10.0, dish.surface, dish.surface))
     verdict = imagine(hidden, few, pool, Reporter()).containability.verdict
@@ -112,6 +113,7 @@ def test_the_unseen_does_not_matter_where_the_answer_stays(dish, few, pool):
     assert verdict.other_share == verdict.capacity_share
 
 
+@pytest.mark.system
 def test_what_no_view_saw_of_a_hollow_is_told_with_it(dish, few, pool):
     floor = box((0, 0, 0), (0.1, 0.06, 0.02)).translated(dish.aabb_min_m)
     shallow = join([*dish.parts, floor])
@@ -137,6 +139,7 @@ class Counting:
         return self._pool.run(tasks, stage, reporter, found)
 
 
+@pytest.mark.system
 def test_what_may_leak_is_dropped_on_beside_the_drop_itself_with_the_same_answer(dish, pipe, few, pool):
     hidden = CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface, pipe))
 
@@ -153,6 +156,7 @@ def test_what_may_leak_is_dropped_on_beside_the_drop_itself_with_the_same_answer
     assert (ahead[1], later[1]) == ([5], [1, 1])
 
 
+@pytest.mark.system
 def test_hollows_are_found_beside_the_drop_with_the_same_answer(dish, few, pool):
     def judged(is_ahead: bool):
         context = ImaginationContext(few, counting := Counting(pool), Reporter())

@@ -153,6 +153,7 @@ def writing_program(folder):
         writer.stdout.close()
 
 
+@pytest.mark.system
 def test_programs_that_share_the_folder_and_are_killed_leave_whole_runs(tmp_path):
     kept = KeptRuns(tmp_path)
     for _ in range(3):

@@ -80,6 +80,7 @@ def test_the_pour_that_is_made_was_tried_even_if_it_was_not_the_first_choice(pip
     assert json.loads((pipeline.session.folder("risk") / "risk.json").read_text()) == known.to_table()
 
 
+@pytest.mark.system
 def test_an_arm_that_can_make_the_first_choice_costs_no_more_tries(pipeline, monkeypatch):
     cell = pour_cell(read_cell())
     imagination = pipeline.imagination()

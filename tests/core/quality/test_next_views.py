@@ -50,6 +50,7 @@ def reconstructed_depth_m(scan) -> float:
     return depth_below_rim_m(reconstruct(scan, COARSE, Reporter()).mesh)
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("name", ["vase", "tube"])
 def test_the_proposed_views_turn_a_dent_into_the_true_depth(name, vase, vase_scan):
     studio = vase if name == "vase" else on_platform(tube(opening_m=0.03, depth_m=0.17))

@@ -41,6 +41,7 @@ def bowl(tmp_path_factory):
     )
 
 
+@pytest.mark.system
 def test_a_bowl_looks_like_a_container_from_above_and_is_poured_into(bowl):
     offset, scanned = bowl.trials
     assert len(offset.view_scores) == 24
@@ -67,6 +68,7 @@ def test_without_images_there_are_no_looks(tmp_path):
     assert trial.score is None and not trial.is_right
 
 
+@pytest.mark.system
 def test_the_seed_decides_and_nothing_else(tmp_path, bowl):
     again = run_trial(task(tmp_path, "bowl", "container", "appearance", n_pours=0)).trials[0]
     assert again.view_scores == bowl.trials[0].view_scores

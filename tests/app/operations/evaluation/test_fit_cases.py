@@ -71,6 +71,7 @@ def test_a_mesh_is_the_same_with_every_seed(objects):
     assert heard.sentences[0].startswith("lost is left out")
 
 
+@pytest.mark.system
 def test_a_scanned_object_is_known_as_it_was_seen(objects):
     block = [one for one in objects if one.name == "block"]
     (case,) = prepare_cases(block, "scan", (3,), PARAMETERS, RunHere(), Reporter()).cases

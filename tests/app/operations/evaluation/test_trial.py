@@ -26,15 +26,17 @@ QUICK = {
 }
 
 
-@pytest.fixture
-def task(tmp_path):
+@pytest.fixture(scope="module")
+def task(tmp_path_factory):
+    meshes = tmp_path_factory.mktemp("meshes")
+
     def of(name: str, label: str, *variants: str) -> TrialTask:
-        write_ply(tmp_path / f"{name}.ply", builtin_object(name))
+        write_ply(meshes / f"{name}.ply", builtin_object(name))
         return TrialTask(
             name,
             label,
             False,
-            (tmp_path / f"{name}.ply").read_bytes(),
+            (meshes / f"{name}.ply").read_bytes(),
             ".ply",
             "mesh",
             apply_settings(Parameters(), QUICK),
@@ -46,9 +48,14 @@ def task(tmp_path):
     return of
 
 
-def test_a_bowl_is_judged_poured_into_and_pictured(task):
-    result = run_trial(task("bowl", "container", "imagination"))
-    (trial,) = result.trials
+@pytest.fixture(scope="module")
+def of_a_bowl(task):
+    """By the whole program, with a fixed direction, against another threshold, and without an arm."""
+    return run_trial(task("bowl", "container", "imagination", "fixed-theta", "threshold-0", "ideal-arm"))
+
+
+def test_a_bowl_is_judged_poured_into_and_pictured(of_a_bowl):
+    trial = of_a_bowl.trials[0]
     assert trial.is_judged_container
     assert trial.is_right
     assert trial.p_chosen > 0.9
@@ -57,9 +64,10 @@ def test_a_bowl_is_judged_poured_into_and_pictured(task):
     assert 0 < trial.n_feasible <= 24
     judged = {"mesh", "scan", "collision", "containability", "judgement"}
     assert set(trial.seconds) == judged | {"pouring", "risk", "retention", "motion", "outcome"}
-    assert result.pictures[trial.picture].startswith(b"\x89PNG")
+    assert of_a_bowl.pictures[trial.picture].startswith(b"\x89PNG")
 
 
+@pytest.mark.system
 def test_a_small_container_gets_what_safely_fits_and_whoever_wants_more_certainty_is_advised(task, tmp_path):
     bowl = builtin_object("bowl")
     write_ply(tmp_path / "half.ply", TriangleMesh(0.5 * bowl.vertices_m, bowl.faces))
@@ -81,8 +89,8 @@ def test_a_block_is_not_poured_into(task):
     assert (trial.is_judged_container, trial.spilled, trial.p_chosen) == (False, (), None)
 
 
-def test_without_an_arm_the_same_pours_are_imagined_and_none_is_beyond_reach(task):
-    by_arm, ideal = run_trial(task("bowl", "container", "imagination", "ideal-arm")).trials
+def test_without_an_arm_the_same_pours_are_imagined_and_none_is_beyond_reach(of_a_bowl):
+    by_arm, *_, ideal = of_a_bowl.trials
     assert "pouring" not in ideal.seconds
     assert "outcome" in ideal.seconds, "another path of the cup"
     assert (ideal.n_feasible, len(ideal.spilled)) == (None, 1)
@@ -97,9 +105,8 @@ def test_an_arm_that_can_make_no_pour_makes_none(task, monkeypatch):
     assert trial.is_judged_container
 
 
-def test_variants_share_what_they_have_in_common(task):
-    both = run_trial(task("bowl", "container", "imagination", "fixed-theta", "threshold-0")).trials
-    plain, fixed, zero = both
+def test_variants_share_what_they_have_in_common(of_a_bowl):
+    plain, fixed, zero, _ = of_a_bowl.trials
     assert (plain.n_in, plain.n_drop) == (fixed.n_in, fixed.n_drop) == (zero.n_in, zero.n_drop)
     assert "containability" not in fixed.seconds
     assert "pouring" in fixed.seconds

@@ -45,6 +45,7 @@ def test_a_dish_holds_its_inside(filled):
     assert filled.n_level == pytest.approx(filled.n_candies - filled.heaped_ml * filled.candies_per_ml)
 
 
+@pytest.mark.system
 def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, filled, candies, few):
     assert filled.least_ml is None and filled.between == ""
     assert filled.level_ml == filled.candy_hollow_ml == pytest.approx(157.5, rel=0.03)
@@ -124,6 +125,7 @@ def test_nothing_is_poured_where_no_candy_stayed(block, candies, few, tmp_path):
     assert Capacity.load(tmp_path).recording is None
 
 
+@pytest.mark.system
 def test_where_candies_half_as_large_would_fall_through_it_is_said(candies, few):
     slit = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003, notch_m=(0.010, 0.035)))
     whole = CollisionModel.exact(open_box((0.08, 0.05, 0.04), 0.003))

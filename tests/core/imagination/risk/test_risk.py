@@ -133,6 +133,7 @@ def two_cups(dish, quick, pool):
     return imagine(dish, apply_settings(quick, settings), pool, Reporter())
 
 
+@pytest.mark.system
 def test_a_later_cup_runs_over_where_the_first_fits(two_cups):
     risk, n_cups = two_cups.risk, two_cups.grid.n_cups
     assert n_cups > 1 and risk.n_cups == n_cups
@@ -142,6 +143,7 @@ def test_a_later_cup_runs_over_where_the_first_fits(two_cups):
     assert risk.n_tries[two_cups.choice.i, two_cups.choice.j] > 0, "what nobody tried is not chosen"
 
 
+@pytest.mark.system
 def test_a_clean_first_cup_is_no_try_of_the_whole_amount(two_cups):
     planned = PourRisk.as_planned(two_cups.grid)
     assert (planned.n_tries == (two_cups.grid.n_spilled[..., 0] > 0)).all()
@@ -160,6 +162,7 @@ def doubtful(dish, quick, pool):
     return imagine(dish, apply_settings(quick, settings), pool, Reporter())
 
 
+@pytest.mark.system
 def test_where_no_pour_is_sure_enough_fewer_candies_are_tried(doubtful, tmp_path):
     risk = doubtful.risk
     assert risk.clean_at_least.max() < 0.7

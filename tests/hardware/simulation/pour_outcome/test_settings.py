@@ -75,6 +75,7 @@ def test_all_settings_are_looked_at() -> None:
     assert {facts.name for facts in describe(OutcomeSettings())} == set(ALTERED) | set(OF_MUJOCO) | COUNTING
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("name", ALTERED)
 def test_each_setting_is_felt(
     simulate: Simulate, bowl: TriangleMesh, rim_m: np.ndarray, usual: TableOutcome, name: str
@@ -83,6 +84,7 @@ def test_each_setting_is_felt(
     assert not same(usual, altered)
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("name", OF_MUJOCO)
 def test_each_setting_of_mujoco_is_felt(
     simulate: Simulate, bowl: TriangleMesh, rim_m: np.ndarray, name: str

@@ -303,6 +303,7 @@ def test_what_a_step_may_be_told_is_in_sight_once_it_is_chosen(qtbot, desk, page
     qtbot.waitUntil(lambda: not told.visibleRegion().isEmpty())
 
 
+@pytest.mark.system
 def test_a_touched_corner_is_read_and_said_with_the_check(qtbot, desk, page):
     path = measured_cell(seed=1)
     choose(qtbot, desk, page, path)

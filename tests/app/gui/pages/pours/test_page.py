@@ -113,6 +113,7 @@ def test_what_the_arm_cannot_make_cannot_be_chosen(page, mug_session, qtbot):
     assert impossible.reason in text_of(page, "selected_arm")
 
 
+@pytest.mark.system
 def test_a_fixed_direction_of_the_grid_is_compared_at_once(page, mug_session, qtbot):
     opened(page, mug_session, qtbot)
     chooser = page.findChild(QComboBox, "compare_with")
@@ -141,6 +142,7 @@ def test_another_session_is_compared_with(page, mug_session, block_session, qtbo
     assert page._compare.other is None
 
 
+@pytest.mark.system
 def test_the_run_before_is_compared_with(page, mug_session, qtbot):
     opened(page, mug_session, qtbot)
     first = page.content.grid
