@@ -36,7 +36,8 @@ unit:
 	$(OFFSCREEN) $(TWO_AT_A_TIME) -m "not gl and not system"
 	$(SCREEN) .venv/bin/python -m pytest -m "gl and not system" tests/app/gui
 
-# Whole jobs: demos, pours, faults, kills and the tour of the window, in real processes over real protocols.
+# Whole jobs: demos, pours, faults, kills and the tour of the window, in real processes over real protocols;
+# and physics that takes more than some ten seconds a test.
 # What drives an arm in real time has the machine to itself: a real arm's computer does nothing else either.
 test-system: setup-test
 	$(OFFSCREEN) $(TWO_AT_A_TIME) -m "not gl and system and not punctual"
