@@ -54,8 +54,12 @@ def of_a_bowl(task):
     return run_trial(task("bowl", "container", "imagination", "fixed-theta", "threshold-0", "ideal-arm"))
 
 
+def by_variant(result):
+    return {trial.variant: trial for trial in result.trials}
+
+
 def test_a_bowl_is_judged_poured_into_and_pictured(of_a_bowl):
-    trial = of_a_bowl.trials[0]
+    trial = by_variant(of_a_bowl)["imagination"]
     assert trial.is_judged_container
     assert trial.is_right
     assert trial.p_chosen > 0.9
@@ -90,7 +94,7 @@ def test_a_block_is_not_poured_into(task):
 
 
 def test_without_an_arm_the_same_pours_are_imagined_and_none_is_beyond_reach(of_a_bowl):
-    by_arm, *_, ideal = of_a_bowl.trials
+    by_arm, ideal = (by_variant(of_a_bowl)[name] for name in ("imagination", "ideal-arm"))
     assert "pouring" not in ideal.seconds
     assert "outcome" in ideal.seconds, "another path of the cup"
     assert (ideal.n_feasible, len(ideal.spilled)) == (None, 1)
@@ -106,7 +110,9 @@ def test_an_arm_that_can_make_no_pour_makes_none(task, monkeypatch):
 
 
 def test_variants_share_what_they_have_in_common(of_a_bowl):
-    plain, fixed, zero, _ = of_a_bowl.trials
+    plain, fixed, zero = (
+        by_variant(of_a_bowl)[name] for name in ("imagination", "fixed-theta", "threshold-0")
+    )
     assert (plain.n_in, plain.n_drop) == (fixed.n_in, fixed.n_drop) == (zero.n_in, zero.n_drop)
     assert "containability" not in fixed.seconds
     assert "pouring" in fixed.seconds
