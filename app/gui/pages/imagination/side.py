@@ -21,6 +21,7 @@ from app.gui.views.labels import say, text_label
 from app.gui.views.omega_bar import OmegaBar
 from app.gui.views.pour_map import MappedPour, PourMap
 from app.gui.views.retention_chart import RetentionChart
+from core.imagination.capacity.result import Capacity
 from core.imagination.results import PoursSoFar
 from core.imagination.retention.result import Retention, retention_sentence
 from core.pipeline.session_view import ALL_IMAGINED
@@ -190,8 +191,8 @@ class VerdictSide(SidePanel):
         capacity, retention = drop.capacity, drop.retention
         if capacity is None:
             return []
-        held = self.tr("{n:.0f} candies, {ml:.0f} ml level").format(
-            n=capacity.level_candies, ml=capacity.level_ml
+        held = self.tr("{n:.0f} candies, {volume} level").format(
+            n=capacity.level_candies, volume=self._level_volume(capacity)
         )
         water = self.tr("Filled from above until it overflowed, then perturbed. Water: {ml:.0f} ml.").format(
             ml=capacity.geometric_volume_ml
@@ -200,6 +201,14 @@ class VerdictSide(SidePanel):
         if retention is None:  # it is tilted last
             return [holds]
         return [holds, Fact(self.tr("Tilted"), self._tilted(retention), retention_sentence(retention))]
+
+    def _level_volume(self, capacity: Capacity) -> str:
+        """The bounds where a scan leaves some: the headline has the figure between them."""
+        if capacity.least_ml is None:
+            return self.tr("{ml:.0f} ml").format(ml=capacity.level_ml)
+        if capacity.most_ml is None:
+            return self.tr("at least {ml:.0f} ml").format(ml=capacity.least_ml)
+        return self.tr("{least:.0f} to {most:.0f} ml").format(least=capacity.least_ml, most=capacity.most_ml)
 
     def _tilted(self, retention: Retention) -> str:
         if isinf(retention.first_rad):

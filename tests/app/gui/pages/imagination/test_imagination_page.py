@@ -1,4 +1,5 @@
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -70,11 +71,24 @@ def test_a_container_is_shown_with_its_reason_its_seed_and_its_footprint(opened,
     assert f"{found.n_in} of {found.n_drop}" in page.side.footprint.accessibleDescription()
     facts = {fact.title: fact.value for fact in page.side.facts.facts}
     assert facts["Seed"] == "0"
-    assert facts["Holds"] == f"{capacity.level_candies:.0f} candies, {capacity.level_ml:.0f} ml level"
+    assert capacity.least_ml < capacity.level_ml < capacity.most_ml
+    between = f"{capacity.least_ml:.0f} to {capacity.most_ml:.0f} ml level"
+    assert facts["Holds"] == f"{capacity.level_candies:.0f} candies, {between}"
     assert f"{np.degrees(page.content.retention.holds_rad):.0f}°" in facts["Tilted"]
     assert facts["Inside after"].startswith("drop ")
     assert facts["Inside after"].endswith(f" / push {found.n_in}")
     assert f"{found.n_in} kept" in text(page, "drop_legend")
+
+
+@pytest.mark.parametrize(
+    ("least_ml", "most_ml", "said"), [(None, None, "345 ml"), (310.2, None, "at least 310 ml")]
+)
+def test_of_the_level_volume_it_is_said_what_is_known(opened, mug_session, least_ml, most_ml, said):
+    page = opened(mug_session)
+    known = {"least_ml": least_ml, "most_ml": most_ml, "hidden_ml": 0.0}
+    capacity = replace(page.drop.capacity, volume_ml=345.0, is_hollow_told=False, **known)
+    page.side.show_drop(replace(page.drop, capacity=capacity))
+    assert page.side.facts.facts[0].value.endswith(f" candies, {said} level")
 
 
 def test_a_block_says_why_it_is_not_a_container(opened, block_session):

@@ -42,6 +42,9 @@ def show(page, verdict):
             drop,
             containability=replace(drop.containability, verdict=verdict),
             retention=replace(drop.retention, n_left=np.tile(n_left, (8, 1))),
+            capacity=replace(
+                drop.capacity, volume_ml=9000.0, is_hollow_told=False, least_ml=8888.0, most_ml=9999.0
+            ),
             phases=tuple(replace(phase, n_inside=290) for phase in drop.phases),
             n_on_top=12,
         )
