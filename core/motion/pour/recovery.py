@@ -22,6 +22,7 @@ _AT_STATION_RAD = 5e-3
 _NO_DISTANCE_RAD = 5e-4
 _JOINING_RAD_S = 0.1
 _ACCELERATING_S = 1.0
+_BY_HAND = "take the cup out of the hand by hand and plan from here."
 
 
 def plan_back_off(
@@ -55,8 +56,7 @@ def plan_back_off(
     nearest, deviation_rad = _nearest(interrupted.trajectory, joints_rad)
     if deviation_rad > MAX_DEVIATION_RAD:
         raise MotionError(
-            f"The arm is {np.degrees(deviation_rad):.0f} degrees off its planned path; take the cup out "
-            "of the hand by hand and plan from here."
+            f"The arm is {np.degrees(deviation_rad):.0f} degrees off its planned path; {_BY_HAND}"
         )
     first = replace(interrupted, trajectory=_remainder(interrupted.trajectory, nearest))
     if deviation_rad < _NO_DISTANCE_RAD:
@@ -90,8 +90,8 @@ def check_rejoining(cell: PourCell, target: PourTarget, moves: Sequence[PlannedM
             )
         except MotionError as error:
             raise MotionError(
-                f"The arm is beside its planned path, and the way to it is not clear: {error} Take the cup "
-                "out of the hand by hand and plan from here."
+                f"The arm is beside its planned path, and the way to it is not clear: {error} "
+                f"{_BY_HAND.capitalize()}"
             ) from error
 
 
