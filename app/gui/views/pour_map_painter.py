@@ -21,7 +21,7 @@ LEGEND_PX = 88
 _FULL_ARC = 0.25
 """Spread at which the arc is as wide as its cell."""
 _LEGEND_STAR_PX = 6.0
-_LEAST_POINTS, _BESIDE_PX = 7.0, 3.0
+_LEAST_POINTS, _BESIDE_PX, _FRAME_PX = 7.0, 3.0, 3.0
 _SMALL_POINTS = 10.0
 """Font size up to which the star is small, too."""
 
@@ -54,13 +54,14 @@ class PourMapPainter(QPainter):
             min(max(self._font.pointSizeF() * depth / 40, 9.0), 15.0), "100", bold=True
         )
 
-    def _fitting(self, points: float, text: str, bold: bool) -> float:
-        """The font size at which a text fits into a ring, `points` at most; 0 where it would be unreadable.
+    def _fitting(self, points: float, text: str, bold: bool, room_px: float | None = None) -> float:
+        """The font size at which a text fits, `points` at most; 0 where it would be unreadable.
 
-        Left and right of the middle the text lies along the radius, so that the ring's depth is its room.
+        Left and right of the middle the text lies along the radius, so that a ring's depth is its room.
         """
+        room_px = self._room_px if room_px is None else room_px
         width_px = QFontMetricsF(tabular(self._font, points, bold=bold)).horizontalAdvance(text)
-        fitting = points * min(self._room_px / width_px, 1.0)
+        fitting = points * min(room_px / width_px, 1.0)
         return fitting if fitting >= _LEAST_POINTS else 0.0
 
     @property
@@ -111,15 +112,23 @@ class PourMapPainter(QPainter):
         if not self._points:
             return  # the colour says it, and the tooltip
         lines = [(f"{100 * value:.0f}", self._points, True)]
-        small_points = (
-            self._fitting(max(self._points - 3, _LEAST_POINTS), small, bold=False) if small else 0.0
-        )
-        if small_points:
+        room_px = self._framed_room_px(j) if away_px else None
+        if small and (
+            small_points := self._fitting(
+                max(self._points - 3, _LEAST_POINTS), small, bold=False, room_px=room_px
+            )
+        ):
             lines.append((small, small_points, False))
         middle = place(self._center, *self._layout.middle(i, j))
         off = middle - self._star(i, j)
         middle += off * (away_px / max(hypot(off.x(), off.y()), 1.0))
         self._write(middle, lines, ink, color if is_hatched else None)
+
+    def _framed_room_px(self, j: int) -> float:
+        """How wide a text may be in the narrower half of a cell whose outline is drawn strongly."""
+        inner, outer = self._layout.ring(j)
+        across_px = 2 * (0.7 * inner + 0.3 * outer) * sin(self._layout.half_rad)
+        return min(self._room_px, across_px) - 2 * _FRAME_PX
 
     def _outline(self, i: int, j: int, inset_px: float) -> QPainterPath:
         """The outline of a cell, drawn in by `inset_px` on every side."""
@@ -166,7 +175,7 @@ class PourMapPainter(QPainter):
     def paint_chosen(self, i: int, j: int, value: float) -> None:
         """Outline the chosen cell inside and put a star into its corner."""
         ink = text_on(viridis(value))
-        self.strokePath(self._outline(i, j, 3.0), QPen(ink, 2))
+        self.strokePath(self._outline(i, j, 1.5), QPen(ink, 2))
         self._draw_star(self._star(i, j), self._star_px, ink)
 
     def _draw_star(self, center: QPointF, size: float, ink: QColor) -> None:

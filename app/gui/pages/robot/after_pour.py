@@ -186,6 +186,7 @@ class RunsPart(Panel):
         super().__init__("runs_part", self.tr("Pours of this session"))
         self.heading.setProperty("role", "heading")
         self._runs: tuple[PourRun, ...] = ()
+        self._is_allowed = True
         self.table = FactTable(
             (
                 Column(self.tr("When"), tooltip=self.tr("When the run was confirmed"), align="left"),
@@ -202,8 +203,16 @@ class RunsPart(Panel):
     def show_runs(self, runs: Sequence[PourRun]) -> None:
         """Show other runs; nothing, if there are none."""
         self._runs = tuple(reversed(runs))
-        self.setVisible(bool(runs))
+        self._show_or_hide()
         self.table.set_rows([self._row(run) for run in self._runs])
+
+    def allow(self, is_allowed: bool) -> None:
+        """Show the runs, or leave the room to what a step asks for."""
+        self._is_allowed = is_allowed
+        self._show_or_hide()
+
+    def _show_or_hide(self) -> None:
+        self.setVisible(self._is_allowed and bool(self._runs))
 
     def select(self, run: object) -> None:
         """Mark the run whose outcome is asked for; none: none of them."""

@@ -75,6 +75,7 @@ class RobotSide(SidePanel):
         self.hold_to_pour.setVisible(step is Step.CHECK)
         self.hold_to_back_off.setVisible(step is Step.CHECK_BACK_OFF)
         self.again.setVisible(step in (Step.CHECK, Step.OUTCOME))
+        self.runs.allow(step is not Step.CHECK)  # all that is to be checked is seen without scrolling
 
 
 class StatePart(Panel):

@@ -227,8 +227,8 @@ def test_the_wheel_over_a_row_changes_nothing(qtbot, editor):
 def test_building_is_quick(qtbot):
     times = []
     for _ in range(3):
-        begin = time.perf_counter()
+        begin = time.process_time()
         widget = ParameterEditor(groups=("containability", "pouring"))
-        times.append(time.perf_counter() - begin)
+        times.append(time.process_time() - begin)
         qtbot.addWidget(widget)
     in_time(min(times), 0.060)

@@ -99,7 +99,7 @@ def test_a_large_mesh_is_prepared_quickly():
     vertices, faces = mug(200_000)
     seconds = []
     for _ in range(4):
-        start = time.perf_counter()
+        start = time.process_time()
         prepare_mesh(vertices, faces)
-        seconds.append(time.perf_counter() - start)
+        seconds.append(time.process_time() - start)
     in_time(min(seconds), 0.06, "the preparation")
