@@ -163,10 +163,9 @@ class Tour:
     def _scan(self) -> None:
         self._walk.click("primary")
         self._walk.wait(lambda: self._is_fresh("collision"), "the mug is scanned", SCAN_S)
-        self._walk.wait_for_work("the scan is checked", SCAN_S)
 
     def _imagine(self) -> None:
-        self._walk.click("next")
+        self._walk.click("tab_imagination")  # to watch: a good scan is imagined at once
         self._walk.wait(lambda: self._is_fresh("risk"), "pours are imagined", IMAGINE_S)
         self._walk.wait_for_work("the imagination ends", IMAGINE_S)
 

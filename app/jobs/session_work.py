@@ -35,6 +35,19 @@ class PictureDrawn:
     path: Path
 
 
+@dataclass(frozen=True)
+class ScanChecked:
+    """What decides how to go on with a scan that was reconstructed.
+
+    Attributes:
+        verdict: of its quality: good, usable, or scan again.
+        hidden_area_m2: of the inside that no view saw, where views ended.
+    """
+
+    verdict: str
+    hidden_area_m2: float
+
+
 class SessionWork(Service):
     """Imports, reconstructs, imagines, judges motions, renders and reports; keeps its workers warm."""
 
@@ -85,13 +98,16 @@ class SessionWork(Service):
         with working_on(task, self._pool, reporter) as pipeline:
             pipeline.import_mesh(path)
 
-    def reconstruct(self, reporter: JobReporter, task: SessionTask) -> None:
-        """Fuse the scan, judge it, and build the collision model."""
+    def reconstruct(self, reporter: JobReporter, task: SessionTask) -> ScanChecked | None:
+        """Fuse the scan, judge it, and build the collision model; return what was judged, if it is a scan."""
+        checked = None
         with working_on(task, self._pool, reporter) as pipeline:
             if pipeline.session.record("scan") is not None:
-                pipeline.quality()
+                quality = pipeline.quality()
+                checked = ScanChecked(quality.verdict, quality.cavity.area_m2)
                 pipeline.colors()
             pipeline.collision()
+        return checked
 
     def imagine(self, reporter: JobReporter, task: SessionTask) -> None:
         """Imagine containability and pours, with whatever is stale before."""

@@ -34,7 +34,8 @@ class Desk(QObject):
     """The session, the jobs and the cell.
 
     Signals: `page_wanted` with the key of a page to show; `message` with a sentence for the message bar;
-    `new_session_wanted` and `report_wanted` when a page offers what the menus do.
+    `new_session_wanted` and `report_wanted` when a page offers what the menus do; `good_scan_taken` when a
+    scan has been taken and checked, and hides nothing.
 
     Attributes:
         workspace: the open session and its parameters.
@@ -51,6 +52,7 @@ class Desk(QObject):
     message = Signal(str)
     new_session_wanted = Signal()
     report_wanted = Signal()
+    good_scan_taken = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)

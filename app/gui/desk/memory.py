@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QByteArray, QSettings
 
 _LAST, _RUNNING, _THEME, _GEOMETRY, _SPLITS = "session/last", "session/running", "theme", "geometry", "splits"
+_GOES_ON = "scan/goes_on"
 
 
 class Memory:
@@ -41,6 +42,15 @@ class Memory:
     @theme.setter
     def theme(self, name: str) -> None:
         self._settings.setValue(_THEME, name)
+
+    @property
+    def imagines_after_scan(self) -> bool:
+        """Whether a good scan is imagined at once; else when somebody asks for it."""
+        return str(self._settings.value(_GOES_ON, "true")).lower() == "true"
+
+    @imagines_after_scan.setter
+    def imagines_after_scan(self, is_wanted: bool) -> None:
+        self._settings.setValue(_GOES_ON, is_wanted)
 
     @property
     def geometry(self) -> QByteArray | None:

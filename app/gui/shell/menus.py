@@ -86,7 +86,21 @@ class Menus(QMenuBar):
         close = _add(menu, self.tr("&Close session"), "Ctrl+W", self._close_session)
         self._session_actions = [report, close]
         menu.addSeparator()
+        self._add_imagine_after_scan(menu)
+        menu.addSeparator()
         _add(menu, self.tr("&Quit"), "Ctrl+Q", self._window.close)
+
+    def _add_imagine_after_scan(self, menu: QMenu) -> None:
+        memory = self._window.memory
+
+        def remember(is_wanted: bool) -> None:
+            memory.imagines_after_scan = is_wanted
+
+        action = menu.addAction(self.tr("&Imagine at once after a good scan"))
+        action.setObjectName("imagine_after_scan")
+        action.setCheckable(True)
+        action.setChecked(memory.imagines_after_scan)
+        action.toggled.connect(remember)
 
     def _add_edit_menu(self) -> None:
         menu = self.addMenu(self.tr("&Edit"))

@@ -158,6 +158,14 @@ class MainWindow(QMainWindow):
             self.show_page("scan")
             page.scan(MUG)
 
+    def _imagine_at_once(self) -> None:
+        """Imagine what was scanned, whatever page is shown: the answer need not wait for a click."""
+        from app.gui.pages.imagination.page import ImaginationPage
+
+        page = self.page("imagination")
+        if isinstance(page, ImaginationPage) and self.memory.imagines_after_scan:
+            page.imagine()
+
     def reset_layout(self) -> None:
         """Give window and pages their usual sizes."""
         self.showNormal()
@@ -241,6 +249,7 @@ class MainWindow(QMainWindow):
         self._tabs.chosen.connect(self.show_page)
         desk.page_wanted.connect(self.show_page)
         desk.message.connect(self._show_message)
+        desk.good_scan_taken.connect(self._imagine_at_once)
         desk.workspace.session_changed.connect(self._on_session)
         desk.workspace.renamed.connect(self._show_title)
         desk.workspace.stages_changed.connect(self._show_states)

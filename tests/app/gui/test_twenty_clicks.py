@@ -42,8 +42,6 @@ def test_a_stranger_gets_from_a_new_simulated_cell_to_a_pour_in_twenty_clicks(
         walk.wait(lambda: window.shown == "scan", "the page of the scan is shown", HANG_S)
         walk.click("primary", within_s=HANG_S)
         walk.wait(lambda: desk.workspace.is_fresh("collision"), "the object is scanned", HANG_S)
-        walk.wait_for_work("the scan is checked", HANG_S)
-        walk.click("next")
         walk.wait(lambda: desk.workspace.is_fresh("risk"), "pours are imagined", HANG_S)
         walk.wait_for_work("the imagination ends", HANG_S)
         walk.click("next")

@@ -77,13 +77,13 @@ class StartPanel(Panel):
             text = self.tr("Reading the cell file …")
         elif cell.robot.is_real:
             text = self.tr(
-                "The {name} has a real {model} at {address}. Connecting moves nothing; it starts a program on a "
-                "controller that runs no other, and sets tool frame, payload and the tool's voltage there."
+                "The {name} has a real {model} at {address}. Connecting moves nothing; it starts a program "
+                "on a controller that runs no other, and sets tool frame, payload and the tool's voltage there."
             ).format(name=cell.name, model=cell.robot.model, address=cell.robot.address)
         else:
             text = self.tr(
-                "The {name} has a simulated {model}, {n:g} times as fast as a real one, controlled by the same "
-                "driver. Nothing real moves."
+                "The {name} has a simulated {model}, {n:g} times as fast as a real one, controlled by the "
+                "same driver. Nothing real moves."
             ).format(name=cell.name, model=cell.robot.model, n=cell.simulation.speed_up)
         self._show(self.tr("Connect the arm"), text, farewell, failure)
 

@@ -133,17 +133,6 @@ def load_images(picture: Picture) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np
     return read_color(picture.color), read_depth(picture.depth)
 
 
-def load_hidden_area(session: Session) -> float:
-    """Return how much of the inside a scan did not see, in square metres of where the views ended.
-
-    Raises:
-        SessionError: the scan was not judged yet.
-    """
-    from core.quality.measures import ScanQuality
-
-    return ScanQuality.load(session.folder("quality")).cavity.area_m2
-
-
 def object_names() -> tuple[str, ...]:
     """Return the built-in objects of the simulated cell."""
     from hardware.simulation.objects import BUILTIN_OBJECTS

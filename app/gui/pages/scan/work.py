@@ -11,9 +11,9 @@ from PySide6.QtCore import QObject, Signal
 
 from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
-from app.gui.pages.scan.loading import FRAMES, load_hidden_area
+from app.gui.pages.scan.loading import FRAMES
 from app.jobs.scan_work import ScanWork
-from app.jobs.session_work import SessionWork
+from app.jobs.session_work import ScanChecked, SessionWork
 from app.library.places import new_session_folder
 from app.library.session_folder import UNFINISHED_SCAN, remove_if_empty
 from app.operations.scan_run import ScanRequest
@@ -80,12 +80,15 @@ class ScanJobs(QObject):
         if self._scan is not None:
             self._scan.start_again = partial(self._scan_again, source, request)
 
-    def check(self) -> None:
-        """Reconstruct and check the scan, and find further views if something was hidden."""
+    def check(self, *, is_new: bool = False) -> None:
+        """Reconstruct and check the scan, and find further views if something was hidden.
+
+        Of a scan that `is_new`, was just taken, and is good, the desk hears: its object can be imagined.
+        """
         self._start(
             self.tr("Check the scan"),
             SessionWork.reconstruct,
-            then=self._look_for_hidden,
+            then=partial(self._go_on, is_new),
             done=self.tr("Scan checked."),
             steps=self._desk.workspace.steps_to("collision", "quality", "colors"),
         )
@@ -173,14 +176,12 @@ class ScanJobs(QObject):
 
     def _check_scan(self, _result: object) -> None:
         if self._is_open:
-            self.check()
+            self.check(is_new=True)
 
-    def _look_for_hidden(self, _result: object) -> None:
-        session = self._desk.workspace.session
-        if session is not None and self._is_open:
-            load = partial(load_hidden_area, session)
-            self._desk.background.run("scan.hidden area", load, self._propose_if_hidden)
-
-    def _propose_if_hidden(self, area_m2: float) -> None:
-        if area_m2 > HIDDEN_AREA_M2 and self._is_open and self._desk.jobs.is_idle:
+    def _go_on(self, is_new: bool, checked: ScanChecked | None) -> None:
+        if checked is None or not self._is_open:
+            return
+        if checked.hidden_area_m2 > HIDDEN_AREA_M2:
             self.propose()
+        elif is_new and checked.verdict == "good":
+            self._desk.good_scan_taken.emit()

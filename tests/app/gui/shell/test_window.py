@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import psutil
 import pytest
 from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, QUrl
-from PySide6.QtGui import QTextDocument
+from PySide6.QtGui import QAction, QTextDocument
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog, QLabel, QMenu, QMessageBox, QPushButton, QWidget
 
@@ -259,6 +259,28 @@ def test_next_leads_to_another_page_or_is_not_there(window, mug_session, qtbot):
     assert _button(window, "next").text() == "Next: let the arm pour"
     window.show_page("robot")
     assert _button(window, "next").isHidden()
+
+
+def test_a_good_scan_is_imagined_at_once_and_the_page_stays(window, mug_session, qtbot):
+    desk = window.desk
+    desk.open_session(mug_session)
+    window.show_page("scan")
+    with qtbot.waitSignal(desk.jobs.finished):
+        desk.good_scan_taken.emit()
+        assert desk.jobs.running.title == "Imagine"
+        assert _tab(window, "imagination").word == "running"
+    assert window.shown == "scan"
+
+
+def test_who_does_not_want_it_is_asked_to_imagine_after_a_good_scan(window, mug_session):
+    window.setMenuBar(Menus(window))
+    window.desk.open_session(mug_session)
+    wish = window.menuBar().findChild(QAction, "imagine_after_scan")
+    assert wish.isChecked()
+    wish.trigger()
+    window.desk.good_scan_taken.emit()
+    assert window.desk.jobs.is_idle
+    assert not Memory().imagines_after_scan
 
 
 def test_enter_presses_the_button_that_has_the_focus(window, qtbot):

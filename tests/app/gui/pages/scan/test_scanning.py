@@ -70,8 +70,9 @@ def test_a_view_is_taken_again_and_judged_anew(qtbot, desk, make_page, mug_sessi
 
     desk.workspace.open(mug_session)
     page = make_page(read_cell())
-    finished = []
+    finished, good = [], []
     desk.jobs.finished.connect(lambda job, _: finished.append(job.title))
+    desk.good_scan_taken.connect(lambda: good.append(list(finished)))
     image = mug_session / "scan/rgbd/frame-000002.depth.png"
     written_ns = image.stat().st_mtime_ns
     pick_thumbnail(page, 2)
@@ -80,6 +81,7 @@ def test_a_view_is_taken_again_and_judged_anew(qtbot, desk, make_page, mug_sessi
     qtbot.waitUntil(lambda: len(finished) == 2)
     settle(qtbot, desk, page)
     assert finished == ["Scan", "Check the scan"]
+    assert good == [finished], "told once, when it was checked"
     assert image.stat().st_mtime_ns != written_ns
     assert headline(page).startswith("Good scan")
     assert text(page, "caption") == "View 3: taken"
