@@ -78,7 +78,7 @@ class StartPanel(Panel):
         elif cell.robot.is_real:
             text = self.tr(
                 "The {name} has a real {model} at {address}. Connecting moves nothing; it starts a program "
-                "on a controller that runs no other, and sets tool frame, payload and the tool's voltage there."
+                "on a controller that runs no other, and sets tool frame, payload and tool voltage there."
             ).format(name=cell.name, model=cell.robot.model, address=cell.robot.address)
         else:
             text = self.tr(
