@@ -1,9 +1,9 @@
 """The object's photographed colours: each vertex gets what the views that see it agree on.
 
 A view counts by how squarely it looks at the place, if nothing of the object is between and the depth it
-measured there is the surface's. Exposure differs from view to view: each gets a gain for each channel, so
-that places seen by several look alike in all. Colours follow from the finished surface, and change nothing of
-it.
+measured there is the surface's; where it measured none, as beside an edge, it may see what is behind.
+Exposure differs from view to view: each gets a gain for each channel, so that places seen by several look
+alike in all. Colours follow from the finished surface, and change nothing of it.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def _seen_by(
     cosine = np.einsum("ij,ij->i", normals, to_eye) / np.linalg.norm(to_eye, axis=1)
     is_seen = is_inside & (cosine > _LEAST_COSINE) & _is_in_front(u, v, z, is_inside)
     measured = frame.depth_m[np.rint(v).astype(np.intp), np.rint(u).astype(np.intp)]
-    is_seen &= (measured == 0) | (np.abs(measured - z) < _DEPTH_ERROR * z)
+    is_seen &= np.abs(measured - z) < _DEPTH_ERROR * z
     return np.where(is_seen, cosine**2 / z**2, 0.0), _bilinear(frame.color, u, v)
 
 

@@ -80,6 +80,13 @@ def test_what_something_hides_does_not_take_its_colour(ball):
     assert np.abs(rgb[facing] - BLUE).max() < 0.06
 
 
+def test_where_a_view_measured_no_depth_it_may_see_what_is_behind(ball):
+    good, blind = view(0.0), view(0.3)
+    blind.color[:], blind.depth_m[:] = 255, 0.0
+    alone, with_it = photographed(ball, scan(good)).rgb, photographed(ball, scan(good, blind)).rgb
+    assert np.array_equal(with_it, alone)
+
+
 def test_colours_leave_the_surface_as_it_is_and_are_kept_with_it(ball, tmp_path):
     before = ball.vertices_m.copy()
     made = photographed(ball, ring([1.0] * 3))
