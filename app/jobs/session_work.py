@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from hardware.cell.settings import CellSettings
 
 
+OF_SCAN = ("quality", "colors")
+"""What is told of a scan and its model, and read by no other stage."""
+
+
 @dataclass(frozen=True)
 class PictureDrawn:
     """A picture can be looked at before the others are done.
@@ -90,8 +94,7 @@ class SessionWork(Service):
         """Take over a scan in the authors' layout, and judge it."""
         with working_on(task, self._pool, reporter) as pipeline:
             pipeline.import_scan(folder)
-            pipeline.quality()
-            pipeline.colors()
+            pipeline.side_by_side(*OF_SCAN)
 
     def import_mesh(self, reporter: JobReporter, task: SessionTask, path: Path) -> None:
         """Take over a mesh instead of a scan."""
@@ -100,21 +103,19 @@ class SessionWork(Service):
 
     def reconstruct(self, reporter: JobReporter, task: SessionTask) -> ScanChecked | None:
         """Fuse the scan, judge it, and build the collision model; return what was judged, if it is a scan."""
-        checked = None
         with working_on(task, self._pool, reporter) as pipeline:
-            if pipeline.session.record("scan") is not None:
-                quality = pipeline.quality()
-                checked = ScanChecked(quality.verdict, quality.cavity.area_m2)
-                pipeline.colors()
-            pipeline.collision()
-        return checked
+            if pipeline.session.record("scan") is None:
+                pipeline.collision()
+                return None
+            pipeline.side_by_side(*OF_SCAN, "collision")
+            quality = pipeline.quality()
+            return ScanChecked(quality.verdict, quality.cavity.area_m2)
 
     def imagine(self, reporter: JobReporter, task: SessionTask) -> None:
         """Imagine containability and pours, with whatever is stale before."""
         with working_on(task, self._pool, reporter) as pipeline:
             if pipeline.session.record("scan") is not None:
-                pipeline.quality()
-                pipeline.colors()
+                pipeline.side_by_side(*OF_SCAN, "collision")
             pipeline.imagination()
 
     def compare_meshes(self, reporter: JobReporter, before: TriangleMesh, after: TriangleMesh) -> FloatArray:

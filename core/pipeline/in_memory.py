@@ -11,7 +11,7 @@ from core.collision import CollisionModel
 from core.imagination.imagination import Imagination
 from core.parameters import Parameters
 from core.pipeline.given_mesh import GivenMesh
-from core.pipeline.running import RUNS, Given, Tools
+from core.pipeline.running import Given, Tools, run_stage
 from core.pipeline.session_view import IMAGINED
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
@@ -46,7 +46,9 @@ class StageMemory:
             for before in stage(name).inputs_of(self._source):
                 self.result(before, parameters)  # so that its seconds are its own
             began_s = perf_counter()
-            self._known[key] = RUNS[name].run(self._given(part, lambda other: self.result(other, parameters)))
+            self._known[key] = run_stage(
+                name, self._given(part, lambda other: self.result(other, parameters))
+            )
             self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - began_s
         return self._known[key]
 

@@ -25,7 +25,16 @@ from core.pipeline.freshness import Freshness, freshness, is_fresh, motion_setti
 from core.pipeline.given_mesh import GivenMesh
 from core.pipeline.news import StageDone
 from core.pipeline.report_content import gather
-from core.pipeline.running import RUNS, Given, Tools, with_n_pour
+from core.pipeline.running import (
+    RUNS,
+    Given,
+    Result,
+    Tools,
+    result_of,
+    run_in_workers,
+    run_stage,
+    with_n_pour,
+)
 from core.pipeline.session_view import IMAGINED, SessionView
 from core.progress import Reporter
 from core.quality.measures import ScanQuality
@@ -271,21 +280,56 @@ class Pipeline:
                 self._bring_up_to_date(each, stage(each).settings(self.parameters))
         return self._loaded(name)
 
+    def side_by_side(self, *names: str) -> None:
+        """Bring stages up to date that are tasks and nothing else, and need nothing of each other.
+
+        Raises:
+            SessionError, StageError, Cancelled: see `result`.
+        """
+        for name in names:
+            for each in stages_before(name, source_of(self.session)):
+                if each not in (*GIVEN, *names):
+                    self._bring_up_to_date(each, stage(each).settings(self.parameters))
+        stale = [name for name in names if not self._is_fresh(name, stage(name).settings(self.parameters))]
+        if not stale:
+            return
+        given = {name: self._given(name) for name in stale}
+        started = perf_counter()
+        done = run_in_workers(given, self.pool, self.reporter)
+        seconds = perf_counter() - started
+        for name, of_one in zip(stale, done, strict=True):
+            settings = stage(name).settings(self.parameters)
+            self._keep(name, self._digests(name), settings, seconds, result_of(name, given[name], of_one))
+
     def _bring_up_to_date(self, name: str, settings: dict[str, Any]) -> None:
         """Run a stage if it is stale; those that it is made from are fresh."""
-        inputs = stage(name).inputs_of(source_of(self.session))
-        digests = {before: self._record(before).digest for before in inputs}
+        if not self._is_fresh(name, settings):
+            self._run(name, self._digests(name), settings)
+
+    def _is_fresh(self, name: str, settings: dict[str, Any]) -> bool:
         record = self.session.record(name)
-        if record is not None and is_fresh(self.session, record, digests, settings):
-            return
-        self._run(name, digests, settings)
+        return record is not None and is_fresh(self.session, record, self._digests(name), settings)
+
+    def _digests(self, name: str) -> dict[str, str]:
+        """Those of the stages that it is made from."""
+        inputs = stage(name).inputs_of(source_of(self.session))
+        return {before: self._record(before).digest for before in inputs}
 
     def _run(self, name: str, digests: dict[str, str], settings: dict[str, Any]) -> None:
         for later in stages_that_end_with(name):
             RUNS[later].ahead(self._given(later))
         started = perf_counter()
-        result = RUNS[name].run(self._given(name))
-        seconds = perf_counter() - started
+        result = run_stage(name, self._given(name))
+        self._keep(name, digests, settings, perf_counter() - started, result)
+
+    def _keep(
+        self,
+        name: str,
+        digests: dict[str, str],
+        settings: dict[str, Any],
+        seconds: float,
+        result: Result | None,
+    ) -> None:
         with self.session.writing(name, inputs=digests, parameters=settings, seconds=seconds) as folder:
             if result is not None:
                 result.save(folder)

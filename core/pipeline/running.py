@@ -5,8 +5,9 @@ A run gets what it was promised and nothing else: the results of its inputs, and
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -29,7 +30,6 @@ from core.imagination.retention.imagine import imagine_retention
 from core.imagination.retention.result import RETENTION_FILE, Retention
 from core.imagination.risk.drawing import with_camera_error, with_scan_error
 from core.imagination.risk.tries import Tries, imagine_risk, try_pours
-from core.mesh import TriangleMesh
 from core.motion.pour.cell import PourCell
 from core.motion.pour.feasibility import PourMotions, feasible_pours
 from core.motion.pour.planning import judge_pours
@@ -105,10 +105,6 @@ class Given:
         found: Reconstruction | GivenMesh = self.result(self.source)
         return found
 
-    def in_worker(self, task: Task, label: str) -> Any:
-        """Run a task that returns its result and its warnings, and pass the warnings on."""
-        return self.heard(*self.tools.runner.run([task], label, self.tools.reporter)[0])
-
     def heard(self, result: Any, warnings: list[str]) -> Any:
         """Pass a task's warnings on, and return its result."""
         for sentence in warnings:
@@ -128,6 +124,19 @@ def _nothing_ahead(_: Given) -> None:
 
 
 @dataclass(frozen=True)
+class InWorkers:
+    """A stage that is nothing but tasks: with others of its kind it can share the workers.
+
+    Attributes:
+        tasks: what is to be computed; nothing if the result is there already.
+        result: makes the stage's result of theirs, in their order.
+    """
+
+    tasks: Callable[[Given], Sequence[Task]]
+    result: Callable[[Given, Sequence[Any]], Result]
+
+
+@dataclass(frozen=True)
 class StageRun:
     """How one stage runs.
 
@@ -137,7 +146,7 @@ class StageRun:
         ahead: lets processors that the stage's last input leaves idle begin with it.
     """
 
-    run: Callable[[Given], Result | None]
+    run: Callable[[Given], Result | None] | InWorkers
     load: Callable[[Path], Any]
     ahead: Callable[[Given], None] = _nothing_ahead
 
@@ -147,52 +156,86 @@ def _given(_: Given) -> Result | None:
     raise ValueError("a given stage is not run")
 
 
-def _reconstruct(given: Given) -> Reconstruction:
+def run_in_workers(given: Mapping[str, Given], runner: TaskRunner, reporter: Reporter) -> list[list[Any]]:
+    """Run the tasks of stages that are `InWorkers`, all at once; return what each one's tasks returned."""
+    tasks = [_in_workers(name).tasks(one) for name, one in given.items()]
+    together = [*chain(*tasks)]
+    *_, last = given
+    done = iter(runner.run(together, last, reporter) if together else ())
+    return [list(islice(done, len(of_one))) for of_one in tasks]
+
+
+def run_stage(name: str, given: Given) -> Result | None:
+    """Make the result of one stage."""
+    run = RUNS[name].run
+    if not isinstance(run, InWorkers):
+        return run(given)
+    [done] = run_in_workers({name: given}, given.tools.runner, given.tools.reporter)
+    return run.result(given, done)
+
+
+def result_of(name: str, given: Given, done: Sequence[Any]) -> Result:
+    """Make the result of a stage of what its tasks returned."""
+    return _in_workers(name).result(given, done)
+
+
+def _in_workers(name: str) -> InWorkers:
+    run = RUNS[name].run
+    if not isinstance(run, InWorkers):
+        raise TypeError(f"the stage '{name}' is more than tasks")
+    return run
+
+
+def _heard(given: Given, done: Sequence[tuple[Any, list[str]]]) -> Any:
+    """The result of one task that returns its warnings, too."""
+    return given.heard(*done[0])
+
+
+def _reconstruction_tasks(given: Given) -> list[Task]:
     assert given.folder is not None, "a scan is read from its session"
-    settings = given.parameters.reconstruction
-    result: Reconstruction = given.in_worker(
-        Task(reconstruction_job, (given.folder / SCAN, settings)), "reconstruction"
-    )
-    return result
+    return [Task(reconstruction_job, (given.folder / SCAN, given.parameters.reconstruction))]
 
 
-def _assess(given: Given) -> ScanQuality:
+def _quality_tasks(given: Given) -> list[Task]:
     assert given.folder is not None, "a scan is read from its session"
     folders = given.folder / SCAN, given.folder / "reconstruction"
     table_height_m = given.scan_facts.get("table_height_m")
-    task = Task(quality_job, (*folders, given.parameters.reconstruction, table_height_m))
-    result: ScanQuality = given.in_worker(task, "quality")
-    return result
+    return [Task(quality_job, (*folders, given.parameters.reconstruction, table_height_m))]
 
 
-def _color(given: Given) -> ModelColors:
+def _color_tasks(given: Given) -> list[Task]:
     assert given.folder is not None, "a scan is read from its session"
-    task = Task(colors_job, (given.folder / SCAN, given.folder / "reconstruction"))
-    result: ModelColors = given.in_worker(task, "colors")
-    return result
+    return [Task(colors_job, (given.folder / SCAN, given.folder / "reconstruction"))]
 
 
-def _collide(given: Given) -> CollisionModel:
+def _collision_tasks(given: Given) -> list[Task]:
+    """Make the body; what a scan allows as well is simplified in the same way."""
     surface, settings = given.surface, given.parameters.collision
-    if isinstance(surface, GivenMesh) and surface.parts is not None and settings.method != "exact":
-        return surface.parts
-    if isinstance(surface, Reconstruction):
-        model = _body_of(surface.mesh, given, surface.unseen)
-        return replace(model, surface_error_m=surface.surface_error_m)
-    return _body_of(surface.mesh, given, None)
-
-
-def _body_of(mesh: TriangleMesh, given: Given, unseen: UnseenReadings | None) -> CollisionModel:
-    """Make the body; what a scan allows as well is simplified in the same way, at the same time."""
-    settings = given.parameters.collision
+    if _given_parts(given) is not None:
+        return []
+    unseen = surface.unseen if isinstance(surface, Reconstruction) else None
     others = () if unseen is None else unseen.surfaces
-    tasks = [
-        Task(collision_job, (mesh, settings)),
-        *(Task(simplify, (o, settings.max_faces)) for o in others),
-    ]
-    done, *simplified = given.tools.runner.run(tasks, "collision", given.tools.reporter)
-    model: CollisionModel = given.heard(*done)
-    return model if unseen is None else replace(model, unseen=UnseenReadings(unseen.unseen_ml, *simplified))
+    simplified = (Task(simplify, (other, settings.max_faces)) for other in others)
+    return [Task(collision_job, (surface.mesh, settings)), *simplified]
+
+
+def _given_parts(given: Given) -> CollisionModel | None:
+    """The convex parts that came with a mesh, where they are wanted."""
+    surface = given.surface
+    is_wanted = given.parameters.collision.method != "exact"
+    return surface.parts if isinstance(surface, GivenMesh) and is_wanted else None
+
+
+def _collision_model(given: Given, done: Sequence[Any]) -> CollisionModel:
+    surface, parts = given.surface, _given_parts(given)
+    if parts is not None:
+        return parts
+    model: CollisionModel = given.heard(*done[0])
+    if not isinstance(surface, Reconstruction):
+        return model
+    if surface.unseen is not None:
+        model = replace(model, unseen=UnseenReadings(surface.unseen.unseen_ml, *done[1:]))
+    return replace(model, surface_error_m=surface.surface_error_m)
 
 
 def _drop(given: Given) -> Drop:
@@ -319,10 +362,10 @@ def _load_pours(folder: Path) -> PourGrid | None:
 
 RUNS: dict[str, StageRun] = {
     MESH: StageRun(_given, GivenMesh.load),
-    "reconstruction": StageRun(_reconstruct, Reconstruction.load),
-    "quality": StageRun(_assess, ScanQuality.load),
-    "colors": StageRun(_color, ModelColors.load),
-    "collision": StageRun(_collide, CollisionModel.load),
+    "reconstruction": StageRun(InWorkers(_reconstruction_tasks, _heard), Reconstruction.load),
+    "quality": StageRun(InWorkers(_quality_tasks, _heard), ScanQuality.load),
+    "colors": StageRun(InWorkers(_color_tasks, _heard), ModelColors.load),
+    "collision": StageRun(InWorkers(_collision_tasks, _collision_model), CollisionModel.load),
     "containability": StageRun(_drop, Drop.load),
     "judgement": StageRun(_judge, Judgement.load, _judge_ahead),
     "amount": StageRun(_plan_amount, PlannedAmount.load),

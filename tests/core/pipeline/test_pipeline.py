@@ -1,6 +1,7 @@
 """Stale and fresh: a changed parameter makes the stages after it stale, and nothing else."""
 
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -37,7 +38,7 @@ class Recorder(Reporter):
 
     def __init__(self, stop_at=None):
         super().__init__()
-        self.stages = []
+        self.stages, self.news = [], []
         self._stop_at = stop_at
 
     def progress(self, stage, done, total):
@@ -45,6 +46,9 @@ class Recorder(Reporter):
             self.stages.append(stage)
         if stage == self._stop_at:
             self.cancel()
+
+    def tell(self, news):
+        self.news.append(news)
 
 
 @pytest.fixture(scope="module")
@@ -130,6 +134,25 @@ def test_a_pouring_parameter_runs_no_drop(name, value, runs, imagined_session, p
     before = created(session)
     pipeline_of(session, pool, {name: value}).imagination()
     assert renewed(before, created(session)) == runs
+
+
+def test_stages_side_by_side_make_what_each_makes_alone_and_only_what_is_stale(imagined_session, pool):
+    """A reconstructed scan, of which the collision model is fresh already."""
+    session, reporter, before = imagined_session, Recorder(), created(imagined_session)
+    alone = pipeline_of(session, pool)
+    expected = alone.quality(), alone.colors()
+    digests = [session.record(name).inputs for name in ("quality", "colors")]
+    for name in ("quality", "colors"):
+        shutil.rmtree(session.path / name)
+
+    pipeline_of(session, pool, reporter=reporter).side_by_side("quality", "colors", "collision")
+    assert [session.record(name).inputs for name in ("quality", "colors")] == digests
+    assert created(session) == before
+    assert reporter.stages == ["colors"], "one run, called by what is finished last"
+    assert [news.stage for news in reporter.news] == ["quality", "colors"]
+    found = pipeline_of(session, pool)
+    assert found.quality().verdict == expected[0].verdict
+    assert np.array_equal(found.colors().rgb, expected[1].rgb)
 
 
 def test_an_interrupted_run_continues_where_it_stopped(session, pool):
