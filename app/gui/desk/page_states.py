@@ -44,7 +44,10 @@ def page_states(workspace: Workspace, running_page: str | None) -> dict[str, Pag
     for page, stages in STAGES_OF_PAGE.items():
         states[page] = PageState(_word(workspace, stages), _figure(workspace, page))
     if running_page in states:
-        states[running_page] = PageState("running", states[running_page].figure)
+        before = states[running_page]
+        # What stages have found is told while those after them run; views and candies are those of before.
+        is_found = running_page in STAGES_OF_PAGE and before.word == "fresh"
+        states[running_page] = PageState("running", before.figure if is_found else "")
     return states
 
 

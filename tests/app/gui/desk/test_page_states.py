@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 from app.gui.desk.page_states import PageState, page_states, with_failure
 from app.gui.pages.robot.steps import missing_for_a_pour
@@ -32,6 +33,17 @@ def test_running_and_failed_pages_are_marked(desk, mug_session):
     states = with_failure(page_states(desk.workspace, "imagination"), "reconstruction")
     assert states["imagination"].word == "running"
     assert states["reconstruction"].word == "failed"
+
+
+def test_a_verdict_is_told_while_the_pours_are_still_imagined(desk, mug_session):
+    desk.workspace.open(mug_session)
+    shutil.rmtree(mug_session / "pouring")
+    desk.workspace.refresh()
+    assert page_states(desk.workspace, "imagination")["imagination"] == PageState("running", "container")
+    assert page_states(desk.workspace, "scan")["scan"] == PageState("running", ""), "they are taken anew"
+    shutil.rmtree(mug_session / "judgement")
+    desk.workspace.refresh()
+    assert page_states(desk.workspace, "imagination")["imagination"] == PageState("running", "")
 
 
 def test_a_pour_belongs_to_the_imagination_it_was_made_for(desk, mug_session):
