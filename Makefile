@@ -11,7 +11,7 @@ TWO_AT_A_TIME = -n 2 --dist loadfile --no-loadscope-reorder
 export PYTHONDONTWRITEBYTECODE =
 SCREEN = env -u WAYLAND_DISPLAY xvfb-run -a -s "-screen 0 1920x1080x24"
 
-.PHONY: run test test-system quick setup setup-test lint unit bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye calibrated-scans calibration-choice decision drift pour-plans pour-faults pour-soak fuzz kills scene-speed stop-latency window-start window-tour window-kills screenshots train-appearance own-kinematics window-load film clean
+.PHONY: run test test-system quick setup setup-test lint unit views bench accuracy tunnelling choices evaluation-cost judgement families capacity holding amounts worlds collision-table looking-again pose-errors hand-eye calibrated-scans calibration-choice decision drift pour-plans pour-faults pour-soak fuzz kills scene-speed stop-latency window-start window-tour window-kills screenshots train-appearance own-kinematics window-load film clean
 
 run: setup
 	@if [ -n "$$DISPLAY$$WAYLAND_DISPLAY" ]; then .venv/bin/poursight; else .venv/bin/poursight demo; fi
@@ -22,7 +22,11 @@ setup:
 setup-test:
 	@tools/setup test
 
-test: setup-test lint unit
+# Neither the checks of the sources nor the 3D views keep two processors busy: they run side by side.
+test: setup-test
+	@echo "Checking the sources and drawing the 3D views: a minute or two without a word."
+	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target lint views
+	@$(MAKE) --no-print-directory unit
 
 lint:
 	.venv/bin/ruff format --check .
@@ -30,10 +34,12 @@ lint:
 	.venv/bin/mypy
 	.venv/bin/lint-imports
 
-# In two runs: without a screen OpenGL draws nothing, and with one a test's windows would need care.
 # Two processes with their workers are enough threads: more of OpenBLAS's own would only wait for each other.
 unit:
 	$(OFFSCREEN) $(TWO_AT_A_TIME) -m "not gl and not system"
+
+# In a run of their own: without a screen OpenGL draws nothing, and with one a test's windows would need care.
+views:
 	$(SCREEN) .venv/bin/python -m pytest -m "gl and not system" tests/app/gui
 
 # Whole jobs: demos, pours, faults, kills and the tour of the window, in real processes over real protocols;
