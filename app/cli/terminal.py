@@ -99,6 +99,8 @@ class TerminalReporter(Reporter):
             return
         if stage not in self._bars:
             self._bars[stage] = self._progress.add_task(stage, total=total)
+        elif done < total and self._progress.tasks[self._bars[stage]].finished:  # as the second cup's pour
+            self._progress.reset(self._bars[stage])
         self._progress.update(self._bars[stage], completed=done, total=total)
 
     def warn(self, sentence: str) -> None:
@@ -146,12 +148,15 @@ class TerminalReporter(Reporter):
 
     def _print_line(self, stage: str, done: float, total: float) -> None:
         now = time.monotonic()
+        is_done = done >= total
+        if self._last_line_s.get(stage) == float("inf"):
+            if is_done:
+                return  # its last line has been printed
+            del self._started_s[stage], self._last_line_s[stage]  # it begins once more
         started = self._started_s.setdefault(stage, now)
-        is_new, is_done = stage not in self._last_line_s, done >= total
+        is_new = stage not in self._last_line_s
         if not (is_new or is_done or now - self._last_line_s[stage] > _LINE_EVERY_S):
             return
-        if self._last_line_s.get(stage) == float("inf"):
-            return  # its last line has been printed
         self._last_line_s[stage] = float("inf") if is_done else now
         fraction = done / total if total else 1.0
         left = ""
