@@ -14,7 +14,7 @@ from tests.app.sessions import copied, made_once
 from tests.awake import within
 from tests.patience import HANG_S
 
-pytestmark = [pytest.mark.system, pytest.mark.punctual]
+pytestmark = pytest.mark.system
 
 QUICK = [
     "--object=bowl",
@@ -93,6 +93,7 @@ def scanned(scanned_bowl, tmp_path):
     return copied(scanned_bowl, tmp_path / "demo")
 
 
+@pytest.mark.punctual
 def test_ctrl_c_in_the_scan_ends_within_two_seconds_and_the_demo_continues(tmp_path):
     out = tmp_path / "demo"
     interrupt_in("scan", out)
@@ -100,6 +101,7 @@ def test_ctrl_c_in_the_scan_ends_within_two_seconds_and_the_demo_continues(tmp_p
     assert "scan:" not in interrupt_in("containability", out), "finished stages must not run again"
 
 
+@pytest.mark.punctual
 def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(scanned):
     out = scanned
     assert "scan:" not in interrupt_in("containability", out), "another command's scan is this session's"
@@ -110,6 +112,7 @@ def test_ctrl_c_ends_within_two_seconds_and_the_session_continues(scanned):
     assert pour_runs(out)[-1].sentence.startswith("Stopped during")
 
 
+@pytest.mark.punctual
 def test_ctrl_c_after_the_pour_does_not_pour_again(scanned):
     out = scanned
     before = interrupt_in("evidence", out, BY_OMEGA)
