@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.gui.pages.pours.results import ShownPours
 from app.gui.theme import GRID_PX
+from app.gui.views.labels import text_label
 from app.gui.views.scene import Scene3D
 from app.gui.views.timeline import Section, Timeline
 from core.geometry import FloatArray
@@ -64,6 +65,10 @@ class PourScene(QWidget):
         self._bar = QWidget()
         bar = QVBoxLayout(self._bar)
         bar.setContentsMargins(GRID_PX, GRID_PX, GRID_PX, GRID_PX)
+        # The dot has the colour of those in the view, which could be taken for candies.
+        bar.addWidget(
+            text_label("pivot_legend", "muted", self.tr("● pivots of the other pours: click to select"))
+        )
         bar.addWidget(self.timeline)
         column.addWidget(self._bar)
         self.scene.picked.connect(self._pick)
