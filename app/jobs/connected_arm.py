@@ -183,7 +183,8 @@ class MoveReporter(Reporter):
         self._durations_s: list[float] = []
         self._begins_s: list[float] = []
         self._pivot_off: PivotOff = lambda _: None
-        self._began_s = self._reported_s = 0.0
+        self._began_s: float | None = None
+        self._reported_s = 0.0
 
     def begin(self, job: JobReporter, moves: Sequence[PlannedMove], pivot_off: PivotOff) -> None:
         """Report these moves to a job from now on."""
@@ -191,7 +192,7 @@ class MoveReporter(Reporter):
         self._names = [move.name for move in moves]
         self._durations_s = [move.trajectory.duration_s for move in moves]
         self._begins_s = [sum(self._durations_s[:k]) for k in range(len(moves))]
-        self._began_s, self._reported_s = time.monotonic(), 0.0
+        self._began_s, self._reported_s = None, 0.0
 
     def progress(self, stage: str, done: float, total: float) -> None:
         """Report how many of the planned seconds are done, and of which move."""
@@ -199,12 +200,16 @@ class MoveReporter(Reporter):
             return
         self._job.progress(stage, done, total)
         now_s = time.monotonic()
+        if (
+            self._began_s is None
+        ):  # not before: the plan is checked once more first, and says nothing of speed
+            self._began_s = now_s
         if now_s - self._reported_s < _MIN_INTERVAL_S:
             return
         self._reported_s = now_s
         k = max(bisect_right(self._begins_s, done + 1e-9) - 1, 0)
         fraction = min((done - self._begins_s[k]) / self._durations_s[k], 1.0)
-        left_s = (total - done) / self._speed(done, now_s)
+        left_s = (total - done) / _speed(done, now_s - self._began_s)
         name = self._names[k]
         self._job.publish(MoveProgress(k, name, fraction, done, left_s, self._pivot_off(name)))
 
@@ -218,10 +223,10 @@ class MoveReporter(Reporter):
         if self._job is not None:
             self._job.raise_if_cancelled()
 
-    def _speed(self, done_s: float, now_s: float) -> float:
-        """Planned seconds per second: above 1 in a sped-up simulation, below with the speed slider down."""
-        spent_s = now_s - self._began_s
-        return max(done_s / spent_s, 1e-3) if spent_s > _MEASURED_SPEED_AFTER_S and done_s > 0 else 1.0
+
+def _speed(done_s: float, spent_s: float) -> float:
+    """Planned seconds per second: above 1 in a sped-up simulation, below with the speed slider down."""
+    return max(done_s / spent_s, 1e-3) if spent_s > _MEASURED_SPEED_AFTER_S and done_s > 0 else 1.0
 
 
 @dataclass(frozen=True)
