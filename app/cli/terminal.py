@@ -67,6 +67,7 @@ class TerminalReporter(Reporter):
         self._bars: dict[str, TaskID] = {}
         self._started_s: dict[str, float] = {}
         self._last_line_s: dict[str, float] = {}
+        self._stage = ""
         self._progress: Progress | None = None
         self._leaving: threading.Timer | None = None
         self._interrupts = Interrupts(self._on_interrupt)
@@ -94,12 +95,15 @@ class TerminalReporter(Reporter):
 
     def progress(self, stage: str, done: float, total: float) -> None:
         """Show that `done` of `total` of a stage are finished."""
+        # As the second cup's pour, after the first one's outcome; some stages have several parts in a row.
+        is_begun_anew = stage != self._stage and done < total
+        self._stage = stage
         if self._progress is None:
-            self._print_line(stage, done, total)
+            self._print_line(stage, done, total, is_begun_anew)
             return
         if stage not in self._bars:
             self._bars[stage] = self._progress.add_task(stage, total=total)
-        elif done < total and self._progress.tasks[self._bars[stage]].finished:  # as the second cup's pour
+        elif is_begun_anew and self._progress.tasks[self._bars[stage]].finished:
             self._progress.reset(self._bars[stage])
         self._progress.update(self._bars[stage], completed=done, total=total)
 
@@ -146,15 +150,14 @@ class TerminalReporter(Reporter):
             self._leaving.cancel()
         super().forget_cancel()
 
-    def _print_line(self, stage: str, done: float, total: float) -> None:
+    def _print_line(self, stage: str, done: float, total: float, is_begun_anew: bool) -> None:
         now = time.monotonic()
-        is_done = done >= total
         if self._last_line_s.get(stage) == float("inf"):
-            if is_done:
+            if not is_begun_anew:
                 return  # its last line has been printed
-            del self._started_s[stage], self._last_line_s[stage]  # it begins once more
+            del self._started_s[stage], self._last_line_s[stage]
         started = self._started_s.setdefault(stage, now)
-        is_new = stage not in self._last_line_s
+        is_new, is_done = stage not in self._last_line_s, done >= total
         if not (is_new or is_done or now - self._last_line_s[stage] > _LINE_EVERY_S):
             return
         self._last_line_s[stage] = float("inf") if is_done else now
