@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-LONGEST = (
+FIRST = (
+    "app/gui/desk/test_job_steps.py",
+    "app/operations/evaluation/test_trial.py",
     "app/cli/test_interrupted.py",
     "app/cli/test_pour_command.py",
     "app/cli/test_scan_command.py",
@@ -20,7 +22,8 @@ LONGEST = (
     "core/motion/pour/test_planning.py",
     "hardware/pouring/test_faults.py",
 )
-"""Files that take longest: begun last, one of them would leave the other processor idle."""
+"""The first makes the mug's session, for which others would wait. The others take longest: begun last, one of
+them would leave the other processor idle."""
 
 
 @pytest.fixture(scope="session")
@@ -41,9 +44,9 @@ def own_cache(tmp_path_factory):
 
 
 def pytest_collection_modifyitems(items):
-    """Begin with the longest files: one process runs a whole file, whose fixtures are costly to make."""
-    here = Path(__file__).parent
-    items.sort(key=lambda item: str(item.path.relative_to(here)) not in LONGEST)
+    """Begin with these files: one process runs a whole file, whose fixtures are costly to make."""
+    here, place = Path(__file__).parent, {name: k for k, name in enumerate(FIRST)}
+    items.sort(key=lambda item: place.get(str(item.path.relative_to(here)), len(FIRST)))
 
 
 def pytest_collection_finish():

@@ -75,6 +75,7 @@ parameter_choices = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.system
 @settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
 @given(mesh=meshes(), chosen=parameter_choices)
 def test_any_mesh_with_any_parameters(mesh, chosen, pool, tmp_path_factory):

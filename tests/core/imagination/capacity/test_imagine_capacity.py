@@ -79,6 +79,7 @@ def test_few_large_balls_in_narrow_hollows_do_not_make_them_smaller(candies, few
     assert found.level_candies == pytest.approx(found.level_ml * found.candies_per_ml)
 
 
+@pytest.mark.system
 def test_of_what_is_no_container_it_is_told_what_stayed(candies, few):
     """A block with a recess for 85 ml, 7 % of its bulk."""
     edges = [box((0, 0, 0.08), (0.12, 0.005, 0.087)), box((0, 0.115, 0.08), (0.12, 0.12, 0.087))]
