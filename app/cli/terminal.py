@@ -95,15 +95,16 @@ class TerminalReporter(Reporter):
 
     def progress(self, stage: str, done: float, total: float) -> None:
         """Show that `done` of `total` of a stage are finished."""
-        # As the second cup's pour, after the first one's outcome; some stages have several parts in a row.
-        is_begun_anew = stage != self._stage and done < total
+        # For the first time or once more, as the second cup's pour after the first one's outcome. A stage of
+        # several parts in a row goes on after its end, and is told once.
+        is_beginning = stage != self._stage and done < total
         self._stage = stage
         if self._progress is None:
-            self._print_line(stage, done, total, is_begun_anew)
+            self._print_line(stage, done, total, is_beginning)
             return
         if stage not in self._bars:
             self._bars[stage] = self._progress.add_task(stage, total=total)
-        elif is_begun_anew and self._progress.tasks[self._bars[stage]].finished:
+        elif is_beginning and self._progress.tasks[self._bars[stage]].finished:
             self._progress.reset(self._bars[stage])
         self._progress.update(self._bars[stage], completed=done, total=total)
 
@@ -150,10 +151,10 @@ class TerminalReporter(Reporter):
             self._leaving.cancel()
         super().forget_cancel()
 
-    def _print_line(self, stage: str, done: float, total: float, is_begun_anew: bool) -> None:
+    def _print_line(self, stage: str, done: float, total: float, is_beginning: bool) -> None:
         now = time.monotonic()
         if self._last_line_s.get(stage) == float("inf"):
-            if not is_begun_anew:
+            if not is_beginning:
                 return  # its last line has been printed
             del self._started_s[stage], self._last_line_s[stage]
         started = self._started_s.setdefault(stage, now)

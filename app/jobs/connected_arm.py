@@ -200,9 +200,8 @@ class MoveReporter(Reporter):
             return
         self._job.progress(stage, done, total)
         now_s = time.monotonic()
-        if (
-            self._began_s is None
-        ):  # not before: the plan is checked once more first, and says nothing of speed
+        # Not in `begin`: the plan is checked once more before the first move, whatever its speed.
+        if self._began_s is None:
             self._began_s = now_s
         if now_s - self._reported_s < _MIN_INTERVAL_S:
             return

@@ -3,23 +3,21 @@
 from __future__ import annotations
 
 import re
-from types import SimpleNamespace
 
 import psutil
 import pytest
 from PySide6.QtCore import QEvent, QObject, QPoint, Qt, QTimer, QUrl
-from PySide6.QtGui import QAction, QTextDocument
+from PySide6.QtGui import QTextDocument
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QInputDialog, QLabel, QMenu, QMessageBox, QPushButton, QWidget
 
 from app.gui.desk.memory import Memory
-from app.gui.desk.page_states import PageState
 from app.gui.pages.page import SplitView
 from app.gui.pages.registry import OTHERS, WORK
 from app.gui.pages.welcome.pictures import FOLDER, STEPS
 from app.gui.shell.frame import Chip, Tab
 from app.gui.shell.guide import GUIDE_FILE, Guide
-from app.gui.shell.job_bar import MessageBar, next_step
+from app.gui.shell.job_bar import MessageBar
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
 from app.gui.theme import DARK, LIGHT, THEMES, apply_theme, theme_of
@@ -217,70 +215,6 @@ def test_whoever_cancels_a_job_sees_no_banner(window, mug_session, qtbot):
     assert window.messages.sentence == ""
     assert window.findChild(QLabel, "job_text").text() == "Imagine: cancelled; what was finished is kept."
     assert window.page("scan").height() == height
-
-
-@pytest.mark.parametrize("shown", WORK)
-@pytest.mark.parametrize("robot", ["empty", "stale", "failed", "fresh"])
-def test_next_leads_to_the_arm_until_the_candies_are_in_and_then_it_is_gone(shown, robot):
-    states = {page: PageState("fresh") for page in WORK} | {"robot": PageState(robot)}
-    step = next_step(states, True, shown)
-    if robot == "fresh":
-        assert step is None
-    else:
-        assert step is not None and step.page == ("robot" if shown in ("pours", "robot") else "pours")
-
-
-def test_after_an_entered_outcome_nothing_is_next_anywhere(window, mug_session):
-    window.desk.open_session(mug_session)
-    workspace = window.desk.workspace
-    run = SimpleNamespace(is_back_off=False, is_done=True, imagination=workspace.record("pouring").digest,
-                          outcome=SimpleNamespace(n_spilled=0))  # fmt: skip
-    workspace.runs = [run]
-    workspace.stages_changed.emit()
-    assert _tab(window, "robot").figure == "0 spilled"
-    for page in WORK:
-        window.show_page(page)
-        assert _button(window, "next").isHidden()
-
-
-def test_next_leads_to_another_page_or_is_not_there(window, mug_session, qtbot):
-    window.setMenuBar(Menus(window))
-    window.desk.open_session(mug_session)
-    window.show_page("imagination")
-    assert _button(window, "next").text() == "Next: review the pours"
-    next_step = next(
-        action
-        for menu in window.menuBar().findChildren(QMenu)
-        for action in menu.actions()
-        if action.shortcut().toString() == "Ctrl+Return"
-    )
-    next_step.trigger()
-    assert window.shown == "pours"
-    assert _button(window, "next").text() == "Next: let the arm pour"
-    window.show_page("robot")
-    assert _button(window, "next").isHidden()
-
-
-def test_a_good_scan_is_imagined_at_once_and_the_page_stays(window, mug_session, qtbot):
-    desk = window.desk
-    desk.open_session(mug_session)
-    window.show_page("scan")
-    with qtbot.waitSignal(desk.jobs.finished):
-        desk.good_scan_taken.emit()
-        assert desk.jobs.running.title == "Imagine"
-        assert _tab(window, "imagination").word == "running"
-    assert window.shown == "scan"
-
-
-def test_who_does_not_want_it_is_asked_to_imagine_after_a_good_scan(window, mug_session):
-    window.setMenuBar(Menus(window))
-    window.desk.open_session(mug_session)
-    wish = window.menuBar().findChild(QAction, "imagine_after_scan")
-    assert wish.isChecked()
-    wish.trigger()
-    window.desk.good_scan_taken.emit()
-    assert window.desk.jobs.is_idle
-    assert not Memory().imagines_after_scan
 
 
 def test_enter_presses_the_button_that_has_the_focus(window, qtbot):

@@ -42,6 +42,7 @@ def button(page, name):
 
 def test_without_a_session_it_says_what_will_be_here(page, qtbot):
     assert text_of(page, "chosen_pour") == "No pours yet."
+    assert text_of(page, "pivot_legend") == ""
     with qtbot.waitSignal(page.desk.page_wanted) as wanted:
         button(page, "primary").click()
     assert wanted.args == ["scan"]
@@ -63,6 +64,7 @@ def test_map_and_scene_are_linked_both_ways(page, mug_session, qtbot):
     pours_map, scene = page.findChild(PourMap), page._scene.scene
     pours_map.selected.emit(5, 1)
     assert "25 mm out" in text_of(page, "selected_facts")
+    assert "pivots" in text_of(page, "pivot_legend")
     scene.picked.emit("pivots", 3 * 3 + 2)
     assert pours_map.selection == (3, 2)
     indent_m = page.content.grid.indent_m[2]
