@@ -18,8 +18,13 @@ _BEVEL = 0.15
 _ROUND: Outline = tuple((float(np.sin(a)), float(np.cos(a))) for a in np.pi * np.arange(1, 6) / 6)
 _SAFE_MOVE_M = 0.0009
 """Bullet sees a triangle from 1 mm away: a candy that moves on by more between two looks slips through it."""
-_SAFE_SHARE_OF_RADIUS = 0.5
-"""Of a ball, which a wall sees until its centre is through."""
+_SAFE_SKINS = 2.0
+"""How far a candy may move on, in thicknesses of its skin: what is not in the skin is met by the sweep."""
+_SWEPT_SHARE = 0.5
+"""Radius of the ball that is swept along a fast particle's way, relative to half the particle's height.
+
+A larger one would stop the particle before it touches, and take its bounce.
+"""
 
 
 class ParticleShape:
@@ -46,9 +51,12 @@ class ParticleShape:
         return 0.0
 
     def safe_move_m(self, particle: ParticleParameters) -> float:
-        """Return how far it may move in one computation without slipping through a wall (decision 0001)."""
-        # A wall that is in the skin, and not yet in the hull, is still seen.
-        return max(_SAFE_MOVE_M, self.skin_m(particle))
+        """Return how far it may move in one computation without slipping through a wall (decision 0047)."""
+        return max(_SAFE_MOVE_M, _SAFE_SKINS * self.skin_m(particle))
+
+    def swept_radius_m(self, particle: ParticleParameters) -> float:
+        """Return the radius of the ball whose way continuous collision detection follows (decision 0047)."""
+        return _SWEPT_SHARE * self.height_m(particle) / 2
 
     def collision(self, particle: ParticleParameters) -> dict[str, Any]:
         """Return the arguments of `createCollisionShape`; only workers ask."""
@@ -93,7 +101,7 @@ class _Sphere(ParticleShape):
         return np.full(len(cosine), particle.diameter_m / 2)
 
     def safe_move_m(self, particle: ParticleParameters) -> float:
-        return max(_SAFE_MOVE_M, _SAFE_SHARE_OF_RADIUS * particle.diameter_m / 2)
+        return max(_SAFE_MOVE_M, particle.diameter_m / 2)
 
     def collision(self, particle: ParticleParameters) -> dict[str, Any]:
         return {"shapeType": bullet.GEOM_SPHERE, "radius": particle.diameter_m / 2}
@@ -103,12 +111,14 @@ class _Ellipsoid(ParticleShape):
     """A lentil: a convex hull in a round skin.
 
     While only skins touch, contacts are quick to find and exact, and a fast candy is seen by a wall before it
-    is in it: the same pours take half the time and fewer parts of a step.
+    is in it: the same pours take half the time and fewer parts of a step. The hull's vertices are those with
+    which hull and skin come closest to the ellipsoid, 0.15 mm at most for the default candy (decision 0047).
     """
 
     outline = _ROUND
     _skin_share = 0.7
-    _rings, _sides = (0.0, 0.6), 12
+    _rim_sides = 12
+    _face_height, _face_sides = 0.8, 4
 
     def volume_m3(self, particle: ParticleParameters) -> float:
         return pi / 6 * particle.diameter_m**2 * particle.height_m
@@ -135,17 +145,22 @@ class _Ellipsoid(ParticleShape):
 
     def hull_m(self, diameter_m: float, height_m: float) -> FloatArray:
         """Return the vertices (n, 3) of a convex hull that stands for an ellipsoid flattened along z."""
-        angles = np.arange(self._sides) * 2 * np.pi / self._sides
-        vertices = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
-        for z in self._rings:
-            radius = np.sqrt(1 - z * z)
-            ring = np.column_stack(
-                [radius * np.cos(angles), radius * np.sin(angles), np.full_like(angles, z)]
-            )
-            vertices += ring.tolist()
-            if z > 0:
-                vertices += (ring * [1, 1, -1]).tolist()
-        return np.array(vertices) * [diameter_m / 2, diameter_m / 2, height_m / 2]
+        vertices = np.vstack(
+            [
+                [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
+                _ring(0.0, self._rim_sides),
+                _ring(self._face_height, self._face_sides),
+                _ring(-self._face_height, self._face_sides),
+            ]
+        )
+        return vertices * [diameter_m / 2, diameter_m / 2, height_m / 2]
+
+
+def _ring(height: float, sides: int) -> FloatArray:
+    """Return vertices (sides, 3) of the unit sphere at a height."""
+    angles = np.arange(sides) * 2 * np.pi / sides
+    radius = np.sqrt(1 - height * height)
+    return np.column_stack([radius * np.cos(angles), radius * np.sin(angles), np.full(sides, height)])
 
 
 ELLIPSOID = _Ellipsoid()

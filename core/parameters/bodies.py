@@ -131,8 +131,8 @@ class SolverParameters(Group):
     )
     substeps: int = quantity(
         10,
-        "Most parts a step is computed in, so that no candy near the object moves on by more than its skin, "
-        "a ball by half its radius.",
+        "Most parts a step is computed in, so that no candy near the object moves on by more than twice its "
+        "skin, a ball by its radius; with 1, fast ones may slip through walls.",
         unit="",
         source=OURS,
         low=1,

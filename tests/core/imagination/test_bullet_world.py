@@ -32,6 +32,14 @@ def test_no_ball_that_stands_for_several_candies_slips_through(speed_m_s):
         assert thrown(BulletWorld, *settings, speed_m_s, tilt_rad, seed=0) == (64, 0)
 
 
+def test_a_candy_too_fast_for_the_finest_step_is_stopped_on_its_way():
+    parameters = Parameters()
+    coarse = parameters.solver.model_copy(update={"rate_hz": 60, "substeps": 2})
+    for tilt_rad in TILTS_RAD:
+        settings = coarse, parameters.particle, parameters.pouring.contact
+        assert thrown(BulletWorld, *settings, 2.0, tilt_rad, seed=0) == (64, 0)
+
+
 def test_candies_slip_through_where_no_step_may_be_refined():
     """The experiment of the tests above sees what it looks for."""
     parameters = Parameters()

@@ -44,6 +44,18 @@ def test_the_hull_lies_inside_the_ellipsoid_and_touches_it():
     assert radii == pytest.approx(np.ones(len(radii)))
 
 
+def test_hull_and_skin_come_close_to_the_ellipsoid():
+    candy = ParticleParameters()
+    skin_m = ELLIPSOID.skin_m(candy)
+    hull = ELLIPSOID.hull_m(candy.diameter_m - 2 * skin_m, candy.height_m - 2 * skin_m)
+    directions = np.random.default_rng(0).normal(size=(2000, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    reach_m = (directions @ hull.T).max(axis=1) + skin_m
+    half_m = np.array([candy.diameter_m, candy.diameter_m, candy.height_m]) / 2
+    true_m = np.linalg.norm(directions * half_m, axis=1)
+    assert np.abs(reach_m - true_m).max() < 0.16e-3
+
+
 @pytest.mark.parametrize("ask", [particle_extents_m, particle_volume_m3])
 def test_an_unknown_shape_is_a_sentence_and_never_another_shape(ask):
     cube = particle("sphere").model_copy(update={"shape": "cube"})
