@@ -7,6 +7,7 @@ from functools import partial
 
 from core.collision import CollisionModel
 from core.imagination.capacity.basin import ML, Basin
+from core.imagination.capacity.stand_in import stand_in_for
 from core.imagination.context import ImaginationContext
 from core.imagination.particle_shape import particle_volume_m3
 from core.mesh import TriangleMesh
@@ -23,35 +24,45 @@ _SMALLEST_CANDIES = 1.0
 """A hollow counts when its bulk holds so many."""
 _USUAL_FRACTION = 0.6
 
+Question = tuple[float, float, int]
+"""Of a surface: thickness of what it shall hold (m), least volume that counts (ml), points of the lattice."""
+
 
 def basin_of(context: ImaginationContext, surface: TriangleMesh, thickness_m: float) -> Basin:
     """Return what a surface holds of something so thick (m)."""
-    task = _task(surface, thickness_m, context.parameters)
-    made: Basin | None = context.ahead.of(surface, task.arguments[1:])
-    return context.run([task], STAGE)[0] if made is None else made
+    question = _question(thickness_m, context.parameters)
+    made: Basin | None = context.ahead.of(surface, question)
+    return context.run([_task(surface, question)], STAGE)[0] if made is None else made
 
 
 def find_beside(
     context: ImaginationContext, surface: TriangleMesh, thickness_m: float, take: Callable[[Basin], None]
 ) -> None:
     """Let the same be found beside the next tasks, unless it is known; `take` receives it."""
-    task = _task(surface, thickness_m, context.parameters)
-    made: Basin | None = context.ahead.of(surface, task.arguments[1:])
+    question = _question(thickness_m, context.parameters)
+    made: Basin | None = context.ahead.of(surface, question)
     if made is None:
-        context.spare.append((task, take))
+        context.spare.append((_task(surface, question), take))
     else:
         take(made)
 
 
 def find_ahead(context: ImaginationContext, model: CollisionModel) -> None:
     """Let idle processors find what the capacity of an object needs, whatever stays of a drop."""
-    parameters = context.parameters
-    wanted = [(model.surface, 1.0), (model.most_detailed, HALF)]
+    parameters, ahead = context.parameters, context.ahead
+    diameter_m = parameters.particle.diameter_m
+
+    def keep(found: list[tuple[Question, Basin]]) -> None:
+        for question, basin in found:
+            ahead.keep(model.surface, question, basin)
+
+    context.spare.append((Task(_find_for_filling, (model.surface, parameters)), keep))
+    wanted = [(model.most_detailed, HALF)]
     if model.unseen is not None:
         wanted.append((model.unseen.roomy, 1.0))
     for surface, scale in wanted:
-        task = _task(surface, scale * parameters.particle.diameter_m, parameters)
-        context.spare.append((task, partial(context.ahead.keep, surface, task.arguments[1:])))
+        question = _question(scale * diameter_m, parameters)
+        context.spare.append((_task(surface, question), partial(ahead.keep, surface, question)))
 
 
 def usual_bulk_ml(parameters: Parameters) -> float:
@@ -59,12 +70,27 @@ def usual_bulk_ml(parameters: Parameters) -> float:
     return particle_volume_m3(parameters.particle) * ML / _USUAL_FRACTION
 
 
-def _task(surface: TriangleMesh, thickness_m: float, parameters: Parameters) -> Task:
+def _question(thickness_m: float, parameters: Parameters) -> Question:
     smallest_ml = _SMALLEST_CANDIES * usual_bulk_ml(parameters)
-    return Task(_find, (surface, thickness_m, smallest_ml, parameters.capacity.lattice_points), 1.0)
+    return thickness_m, smallest_ml, parameters.capacity.lattice_points
 
 
-def _find(surface: TriangleMesh, thickness_m: float, smallest_ml: float, points: int) -> Basin:
+def _task(surface: TriangleMesh, question: Question) -> Task:
+    return Task(_find, (surface, question))
+
+
+def _find_for_filling(surface: TriangleMesh, parameters: Parameters) -> list[tuple[Question, Basin]]:
+    """Find the hollow for candies, and that for the balls that stand for them if they are too many."""
+    for_candies = _question(parameters.particle.diameter_m, parameters)
+    basin = _find(surface, for_candies)
+    stand_in = stand_in_for(basin.candies_ml / usual_bulk_ml(parameters), basin.mouth_m, parameters)
+    if stand_in.scale == 1:
+        return [(for_candies, basin)]
+    for_balls = _question(stand_in.particle.diameter_m, parameters)
+    return [(for_candies, basin), (for_balls, _find(surface, for_balls))]
+
+
+def _find(surface: TriangleMesh, question: Question) -> Basin:
     from core.imagination.capacity.water import find_basin  # loads numba: in the worker alone
 
-    return find_basin(surface, thickness_m, smallest_ml, points)
+    return find_basin(surface, *question)

@@ -15,10 +15,9 @@ from core.imagination.capacity.openings import has_opening_below
 from core.imagination.capacity.result import Capacity
 from core.imagination.capacity.stand_in import (
     ball_diameter_m,
-    ball_of,
     bulk_ml,
-    candy_itself,
     smaller_candy,
+    stand_in_for,
 )
 from core.imagination.context import ImaginationContext
 from core.imagination.object_at_rest import ObjectAtRest
@@ -44,8 +43,6 @@ _FEW = 60
 """Half as large candies that show whether they run out."""
 _FALL_THROUGH = 0.5
 """Share of the hollow for candies, below which the hollow for half as large ones leaks."""
-_MOST_FOR_MOUTH = 1.5
-"""Times the balls aimed at that a narrow mouth may lead to: then they become larger than it would like."""
 _PLUGGED = 1.1
 """Gaps matter when the hollow is by so much larger for what is as thick as the balls."""
 
@@ -178,15 +175,9 @@ def _bulk_ml(plan: FillPlan, fillings: tuple[Filling, ...], basin: Basin) -> flo
 
 
 def _plan(basin: Basin, found: Drop, parameters: Parameters) -> FillPlan:
-    settings = parameters.capacity
     # What the drop left inside fits, whatever the geometry says of gaps.
     n_candies = max(basin.candies_ml / usual_bulk_ml(parameters), float(found.n_in))
-    stand_in = candy_itself(parameters)
-    if n_candies > settings.n_real:
-        scale = (n_candies / settings.n_aimed) ** (1 / 3)
-        widest = basin.mouth_m / settings.widths_in_mouth / ball_diameter_m(parameters.particle)
-        least = (n_candies / settings.n_aimed / _MOST_FOR_MOUTH) ** (1 / 3)
-        stand_in = ball_of(parameters, max(min(scale, widest), least, 1.0))
+    stand_in = stand_in_for(n_candies, basin.mouth_m, parameters)
     extents_m = found.aabb_m[1, :2] - found.aabb_m[0, :2]
     apart_m = float(np.sqrt(np.prod(extents_m) / found.n_drop))
     footprint_m = found.drop_positions_m[found.retained, :2]

@@ -12,6 +12,8 @@ from core.parameters.bodies import ContactParameters, ParticleParameters, Solver
 _BALL_SUBSTEPS = 2
 """A ball is seen by a wall until its centre is through it, which is long after a hull is lost."""
 _LEAST_RATE_HZ = 120
+_MOST_FOR_MOUTH = 1.5
+"""Times the balls aimed at that a narrow mouth may lead to: then they become larger than it would like."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +77,17 @@ def ball_of(parameters: Parameters, scale: float) -> StandIn:
         }
     )
     return StandIn(scale, ball, _slowed(contact, scale), solver)
+
+
+def stand_in_for(n_candies: float, mouth_m: float, parameters: Parameters) -> StandIn:
+    """Return what stands for so many candies, poured through a mouth so wide (m): balls, if they are many."""
+    settings = parameters.capacity
+    if n_candies <= settings.n_real:
+        return candy_itself(parameters)
+    times = n_candies / settings.n_aimed
+    widest = mouth_m / settings.widths_in_mouth / ball_diameter_m(parameters.particle)
+    least = (times / _MOST_FOR_MOUTH) ** (1 / 3)
+    return ball_of(parameters, max(min(times ** (1 / 3), widest), least, 1.0))
 
 
 def _slowed(contact: ContactParameters, scale: float) -> ContactParameters:
