@@ -106,7 +106,7 @@ class BulletWorld:
         self.set_gravity(np.array([0.0, 0.0, -GRAVITY_M_S2]))
         self._shape = self._create_particle_shape()
         self._dynamics = shape_of(particle).dynamics(particle)
-        if solver.substeps > 1:
+        if solver.substeps > 1:  # without: the released code's physics, as it was
             self._dynamics["ccdSweptSphereRadius"] = shape_of(particle).swept_radius_m(particle)
         # Without a visual of its own Bullet makes one from the shape, which takes longer than all the rest.
         self._visual: int = bullet.createVisualShape(

@@ -11,6 +11,7 @@ from core.imagination.capacity.stand_in import (
     candy_itself,
     packing_fraction,
     particle_volume_m3,
+    stand_in_for,
 )
 
 
@@ -34,6 +35,15 @@ def test_bulk_is_less_dense_near_walls(candies):
 def test_candies_stand_for_themselves(candies):
     assert candy_itself(candies).scale == 1
     assert candy_itself(candies).particle == candies.particle
+
+
+def test_balls_stand_for_candies_where_these_are_too_many(candies):
+    settings = candies.capacity
+    assert stand_in_for(settings.n_real, 0.08, candies) == candy_itself(candies)
+    many = 8 * max(settings.n_aimed, settings.n_real)
+    wide, narrow = (stand_in_for(many, mouth_m, candies) for mouth_m in (1.0, 0.02))
+    assert wide.scale == pytest.approx((many / settings.n_aimed) ** (1 / 3))
+    assert 1 < narrow.scale < wide.scale, "a mouth has to let them pass"
 
 
 def test_it_overflows_when_the_last_candies_do_not_add_up():
