@@ -336,11 +336,13 @@ def _of_more(facts: Facts, more: float) -> list[str]:
 
 
 def _gap(facts: Facts) -> str:
-    closed = f"where candies are held up to {1000 * facts.rim_m:.0f} mm"
-    if np.isnan(facts.water_level_m):
-        return f"water runs out at the bottom through a gap that candies do not pass, {closed}"
-    height = f"{1000 * facts.water_level_m:.0f} mm above the foot"
-    return f"water runs out {height} through a gap that candies do not pass, {closed}"
+    where = "at the bottom"
+    if not np.isnan(facts.water_level_m):
+        where = f"{1000 * facts.water_level_m:.0f} mm above the foot"
+    return (
+        f"water runs out {where} through a gap that candies do not pass (in a thin wall it may come from the "
+        f"scan), where candies are held up to {1000 * facts.rim_m:.0f} mm"
+    )
 
 
 def _of_less(facts: Facts, less: float) -> list[str]:
