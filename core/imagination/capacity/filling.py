@@ -66,6 +66,7 @@ class FillPlan:
         n_expected: how many may fit.
         basin: what the object holds by geometry.
         only_level: what is above the rim is held only because the stand-ins are large, and does not count.
+        runs_over: whether it rains until nothing more fits, not just as many as are expected.
     """
 
     stand_in: StandIn
@@ -73,6 +74,7 @@ class FillPlan:
     n_expected: float
     basin: Basin
     only_level: bool = False
+    runs_over: bool = True
 
 
 def filling_task(target: ObjectAtRest, plan: FillPlan, filling: int, parameters: Parameters) -> Task:
@@ -155,10 +157,10 @@ class _Play:
         self._last_m = np.empty(0)
 
     def rain(self, rain: Rain) -> None:
-        """Rain until it runs over."""
+        """Rain until it runs over, or as much as is planned."""
         n_expected = self._plan.n_expected
         window = max(_WINDOW_SHARE * n_expected, _WINDOW_LEAST)
-        most = _MOST_SHARE * n_expected + _MOST_MORE
+        most = _MOST_SHARE * n_expected + _MOST_MORE if self._plan.runs_over else n_expected
         seen: list[tuple[int, float]] = []  # particles poured and inside, at each slow handful
         next_step = 0
         while True:

@@ -145,7 +145,7 @@ def _below_an_arch(
             return smaller, also
     drains = basin.water_ml < _DRAINS * basin.candies_ml
     if drains and has_opening(_WIDE * ball_diameter_m(parameters.particle)):
-        few = replace(plan, stand_in=smaller_candy(parameters, HALF), n_expected=_FEW)
+        few = replace(plan, stand_in=smaller_candy(parameters, HALF), n_expected=_FEW, runs_over=False)
         also = _fill(context, target, few)
         if sum(one.n_kept for one in also) < _ARCHES * sum(one.n_poured for one in also):
             return few, also
