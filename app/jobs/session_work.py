@@ -79,11 +79,13 @@ class SessionWork(Service):
         self._wanted_ahead = parameters
 
     def use_idle_time(self, reporter: Reporter) -> bool:
-        """Make some of the cup's runs, if somebody wants them."""
+        """Rehearse what follows a scan and make some of the cup's runs, if somebody wants them."""
         from app.operations.ahead import runs_ahead
+        from core.pipeline.rehearsal import rehearse_in
 
         wanted, self._wanted_ahead = self._wanted_ahead, None
         if wanted is not None:
+            rehearse_in(self._pool, reporter)
             self._ahead = runs_ahead(wanted, self._pool, reporter)
         ahead, self._ahead = self._ahead, None
         if ahead is not None and ahead.make_some():

@@ -36,12 +36,14 @@ def runs_ahead(parameters: Parameters, pool: WorkerPool, reporter: Reporter) -> 
 def computing_ahead(parameters: Parameters, pool: WorkerPool) -> Iterator[None]:
     """Use a pool that is idle inside the block; after it, it is idle again, and ready to reconstruct."""
     from core.pipeline.jobs import JOBS_MODULE
+    from core.pipeline.rehearsal import rehearse_in
 
     ended, reporter = Event(), Reporter()
     pool.start(JOBS_MODULE)
 
     def compute() -> None:
         try:
+            rehearse_in(pool, reporter)
             ahead = runs_ahead(parameters, pool, reporter)
             while not ended.is_set() and ahead.make_some():
                 pass
