@@ -27,6 +27,10 @@ SMALLEST_SHARE = 0.02
 """A further view must reveal this share of the hidden region, ..."""
 FEWEST_VOXELS = 10
 """... and this many voxels."""
+BOTTOM_VOXELS = 3.0
+"""How high above the platform the unseen may be a hole in the bottom, ..."""
+BOTTOM_WORTH = 10.0
+"""... and how many other voxels such a one is worth."""
 WALL_VOXELS = 2.0
 """How far behind a seen surface its wall is taken for known; deeper a view only assumes."""
 RAY_SPACING_VOXELS = 0.7
@@ -101,19 +105,26 @@ def propose_views(
     if len(cavity.region) == 0 or len(candidates) == 0:
         return ()
     revealed = revealed_voxels(volume, cavity, platform_height_m, candidates, camera)
-    least = max(SMALLEST_SHARE * len(cavity.region), FEWEST_VOXELS)
+    worth = worth_of_voxels(volume, cavity, platform_height_m)
+    least = max(SMALLEST_SHARE * worth.sum(), FEWEST_VOXELS)
     chosen: list[ProposedView] = []
     while len(chosen) < most:
-        gains = revealed.sum(axis=1)
+        gains = revealed @ worth
         best = int(gains.argmax())
         if gains[best] < least:
             break
         if can_take(best):
-            chosen.append(ProposedView(best, int(gains[best])))
+            chosen.append(ProposedView(best, int(revealed[best].sum())))
             revealed &= ~revealed[best]
         else:
             revealed[best] = False
     return tuple(chosen)
+
+
+def worth_of_voxels(volume: TsdfVolume, cavity: HiddenCavity, platform_height_m: float) -> FloatArray:
+    """What it is worth to reveal each voxel (M,) of the cavity's region: whether it has a bottom decides."""
+    above_m = volume.centers_m(cavity.region)[:, 2] - platform_height_m
+    return np.where(above_m < BOTTOM_VOXELS * volume.voxel_m, BOTTOM_WORTH, 1.0)
 
 
 def revealed_voxels(

@@ -13,7 +13,13 @@ from core.geometry import FloatArray
 from core.motion.box_views import is_clear_from_home, near_home
 from core.motion.views import Dome, ReachableView, reachable_views
 from core.quality.cavity import find_hidden_cavity
-from core.quality.next_views import SPARSE_SPACING_VOXELS, DepthCamera, propose_views, revealed_voxels
+from core.quality.next_views import (
+    SPARSE_SPACING_VOXELS,
+    DepthCamera,
+    propose_views,
+    revealed_voxels,
+    worth_of_voxels,
+)
 from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import find_unseen_inside
 from core.scan.model import Intrinsics
@@ -25,9 +31,8 @@ from hardware.scanning.views import Joints, ViewState, name_views
 MOST_VIEWS = 6
 VIEWS_A_ROUND = 2
 """What these reveal changes what the others would, so the rest is chosen anew."""
-MOST_VIEWS_BY_DEFAULT = 4
 UNSEEN_SHARE = 0.04
-"""A scan that left more than this share of the inside unseen looks into it."""
+"""A scan that left more than this share of the inside unseen looks into it, or part of the bottom."""
 INTO_OPENINGS = Dome(
     elevations_deg=(20, 30, 40, 50, 56, 62, 68, *range(70, 91, 2)),
     azimuths_deg=tuple(range(-180, 180, 20)),
@@ -74,7 +79,8 @@ def propose(
     width, height = image_size
     settings = cell.settings.camera
     camera = DepthCamera(intrinsics, width, height, settings.baseline_m, settings.min_range_m)
-    told = revealed_voxels(volume, cavity, height_m, poses, camera, SPARSE_SPACING_VOXELS).sum(axis=1)
+    revealed = revealed_voxels(volume, cavity, height_m, poses, camera, SPARSE_SPACING_VOXELS)
+    told = revealed @ worth_of_voxels(volume, cavity, height_m)
     best = _best_of_each_direction(different, told.tolist())
     proposed = propose_views(
         volume,
@@ -105,7 +111,7 @@ def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
         return 0
     chosen_before = procedure.records[n_own:]
     procedure.take([record.view for record in chosen_before if record.state is ViewState.PENDING])
-    most = MOST_VIEWS_BY_DEFAULT - len(chosen_before)
+    most = MOST_VIEWS - len(chosen_before)
     return take_next_best_views(cell, procedure, most, UNSEEN_SHARE)
 
 
@@ -118,10 +124,11 @@ def take_next_best_views(
         cell: of the procedure.
         procedure: which has taken other views.
         most: how many at most.
-        least_share: of the inside; while no more is unseen, none is taken.
+        least_share: of the inside; while no more is unseen, and there is no way through its bottom either,
+            none is taken.
     """
     taken = 0
-    while taken < most and _unseen_share(cell, procedure.volume) > least_share:
+    while taken < most and _is_more_to_see(cell, procedure.volume, least_share):
         proposals = propose(
             cell, procedure.volume, *procedure.camera_facts(), min(VIEWS_A_ROUND, most - taken)
         )
@@ -132,12 +139,13 @@ def take_next_best_views(
     return taken
 
 
-def _unseen_share(cell: Cell, volume: TsdfVolume) -> float:
-    """Which share of the inside of openings no view saw."""
-    return find_unseen_inside(volume, cell.settings.place.platform_height_m).room_share(volume.voxel_m)
+def _is_more_to_see(cell: Cell, volume: TsdfVolume, least_share: float) -> bool:
+    """Whether views left more than a share of the inside of openings unseen, or whether it has a bottom."""
+    unseen = find_unseen_inside(volume, cell.settings.place.platform_height_m)
+    return unseen.room_share(volume.voxel_m) > least_share or unseen.way_through(volume) is not None
 
 
-def _best_of_each_direction(views: list[ReachableView], worth: list[int]) -> list[int]:
+def _best_of_each_direction(views: list[ReachableView], worth: list[float]) -> list[int]:
     """Which view is worth most in each direction; those that are worth nothing are left out."""
     best: dict[tuple[float, float], int] = {}
     for k, view in enumerate(views):

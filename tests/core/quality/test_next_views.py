@@ -11,7 +11,7 @@ from core.geometry import look_at
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.quality.cavity import coarse_volume, find_hidden_cavity
-from core.quality.next_views import propose_views, revealed_voxels
+from core.quality.next_views import BOTTOM_WORTH, propose_views, revealed_voxels, worth_of_voxels
 from core.reconstruction.stage import reconstruct
 from tests.awake import in_time
 from tests.core.quality.studio import BOX, CAMERA, LOW_RINGS, PLATFORM_M, dome, on_platform, tube
@@ -84,9 +84,23 @@ def test_hundreds_of_candidates_take_less_than_two_seconds(hidden):
     views = proposed(hidden, candidates)
     in_time(process_time() - started, 2)
     assert len(candidates) > 450
-    gains = [view.n_revealed_voxels for view in views]
-    assert len(views) == 6 and gains == sorted(gains, reverse=True)
-    assert len({view.index for view in views}) == 6
+    assert len({view.index for view in views}) == len(views) == 6
+    volume, cavity = hidden
+    left = revealed_voxels(*hidden, PLATFORM_M, candidates[[view.index for view in views]], CAMERA)
+    gains = []
+    for row, view in enumerate(views):
+        new = left[row] & ~left[:row].any(axis=0)
+        assert new.sum() == view.n_revealed_voxels
+        gains.append(new @ worth_of_voxels(volume, cavity, PLATFORM_M))
+    assert gains == sorted(gains, reverse=True)
+
+
+def test_the_bottom_is_worth_more_than_what_lies_above(hidden):
+    volume, cavity = hidden
+    worth = worth_of_voxels(volume, cavity, PLATFORM_M)
+    above_m = volume.centers_m(cavity.region)[:, 2] - PLATFORM_M
+    assert (worth[above_m < 0.008] == BOTTOM_WORTH).all() and (above_m < 0.008).any()
+    assert (worth[above_m > 0.02] == 1).all() and (above_m > 0.02).any()
 
 
 def test_a_view_that_was_chosen_adds_nothing_again(hidden):

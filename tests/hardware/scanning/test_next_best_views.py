@@ -12,7 +12,7 @@ from core.reconstruction.stage import reconstruct
 from core.scan import Scan
 from hardware.cell import CellSettings, open_cell, read_cell
 from hardware.scanning.next_best_views import (
-    MOST_VIEWS_BY_DEFAULT,
+    MOST_VIEWS,
     look_inside,
     propose,
     take_next_best_views,
@@ -80,7 +80,14 @@ def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
         n_more = look_inside(cell, procedure, len(cell.views_rad))
         assert depth_m(procedure.scan()) > DEPTH_M / 2
     assert n_views >= 1
-    assert n_views + n_more <= MOST_VIEWS_BY_DEFAULT
+    assert n_views + n_more <= MOST_VIEWS
+
+
+def test_a_bottom_that_was_not_seen_is_looked_at_however_little_it_is():
+    with scanning(tube(0.04, DEPTH_M), SEED) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad))
+        assert take_next_best_views(cell, procedure, most=2, least_share=1.0) >= 1
 
 
 def test_a_scan_does_not_look_inside_where_it_is_told_not_to_or_has_seen_all():
