@@ -24,6 +24,7 @@ from core.evaluation.labels import LabelledObject, read_labels
 from core.imagination.imagination import WORKER_MODULE
 from core.parameters import Parameters
 from core.pipeline.jobs import JOBS_MODULE
+from core.pipeline.rehearsal import rehearse_in
 from core.progress import Reporter
 from core.workers import WorkerPool
 from hardware.cell import read_cell
@@ -46,6 +47,7 @@ def main() -> None:
     print(f"{'':24}{'verdict s':>10}{'pour s':>10}{'processor s':>13}")
     with WorkerPool() as pool, TemporaryDirectory(prefix="poursight-decision-") as folder:
         pool.start(WORKER_MODULE, JOBS_MODULE)
+        rehearse_in(pool, Reporter())
         ahead = runs_ahead(Parameters(), pool, Reporter())
         while ahead.make_some():
             pass
