@@ -29,7 +29,7 @@ FEWEST_VOXELS = 10
 """... and this many voxels."""
 BOTTOM_VOXELS = 3.0
 """How high above the platform the unseen may be a hole in the bottom, ..."""
-BOTTOM_WORTH = 10.0
+BOTTOM_WORTH = 10
 """... and how many other voxels such a one is worth."""
 WALL_VOXELS = 2.0
 """How far behind a seen surface its wall is taken for known; deeper a view only assumes."""
@@ -105,11 +105,12 @@ def propose_views(
     if len(cavity.region) == 0 or len(candidates) == 0:
         return ()
     revealed = revealed_voxels(volume, cavity, platform_height_m, candidates, camera)
-    worth = worth_of_voxels(volume, cavity, platform_height_m)
-    least = max(SMALLEST_SHARE * worth.sum(), FEWEST_VOXELS)
+    is_bottom = bottom_of(volume, cavity, platform_height_m)
+    all_of_it = worth_of(np.ones((1, len(is_bottom)), dtype=np.bool_), is_bottom)[0]
+    least = max(SMALLEST_SHARE * all_of_it, FEWEST_VOXELS)
     chosen: list[ProposedView] = []
     while len(chosen) < most:
-        gains = revealed @ worth
+        gains = worth_of(revealed, is_bottom)
         best = int(gains.argmax())
         if gains[best] < least:
             break
@@ -121,10 +122,15 @@ def propose_views(
     return tuple(chosen)
 
 
-def worth_of_voxels(volume: TsdfVolume, cavity: HiddenCavity, platform_height_m: float) -> FloatArray:
-    """What it is worth to reveal each voxel (M,) of the cavity's region: whether it has a bottom decides."""
+def bottom_of(volume: TsdfVolume, cavity: HiddenCavity, platform_height_m: float) -> BoolArray:
+    """Which voxels (M,) of the cavity's region lie where a hole in the bottom would be."""
     above_m = volume.centers_m(cavity.region)[:, 2] - platform_height_m
-    return np.where(above_m < BOTTOM_VOXELS * volume.voxel_m, BOTTOM_WORTH, 1.0)
+    return np.asarray(above_m < BOTTOM_VOXELS * volume.voxel_m)
+
+
+def worth_of(revealed: BoolArray, is_bottom: BoolArray) -> IntArray:
+    """What each view (N,) is worth that reveals voxels (N, M): one each, more at the bottom (M,)."""
+    return np.asarray(revealed.sum(axis=1) + (BOTTOM_WORTH - 1) * revealed[:, is_bottom].sum(axis=1))
 
 
 def revealed_voxels(

@@ -16,9 +16,10 @@ from core.quality.cavity import find_hidden_cavity
 from core.quality.next_views import (
     SPARSE_SPACING_VOXELS,
     DepthCamera,
+    bottom_of,
     propose_views,
     revealed_voxels,
-    worth_of_voxels,
+    worth_of,
 )
 from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import find_unseen_inside
@@ -32,7 +33,7 @@ MOST_VIEWS = 6
 VIEWS_A_ROUND = 2
 """What these reveal changes what the others would, so the rest is chosen anew."""
 UNSEEN_SHARE = 0.04
-"""A scan that left more than this share of the inside unseen looks into it, or part of the bottom."""
+"""A scan that left more than this share of the inside unseen looks into it; or a way through the bottom."""
 INTO_OPENINGS = Dome(
     elevations_deg=(20, 30, 40, 50, 56, 62, 68, *range(70, 91, 2)),
     azimuths_deg=tuple(range(-180, 180, 20)),
@@ -80,7 +81,7 @@ def propose(
     settings = cell.settings.camera
     camera = DepthCamera(intrinsics, width, height, settings.baseline_m, settings.min_range_m)
     revealed = revealed_voxels(volume, cavity, height_m, poses, camera, SPARSE_SPACING_VOXELS)
-    told = revealed @ worth_of_voxels(volume, cavity, height_m)
+    told = worth_of(revealed, bottom_of(volume, cavity, height_m))
     best = _best_of_each_direction(different, told.tolist())
     proposed = propose_views(
         volume,
@@ -124,8 +125,8 @@ def take_next_best_views(
         cell: of the procedure.
         procedure: which has taken other views.
         most: how many at most.
-        least_share: of the inside; while no more is unseen, and there is no way through its bottom either,
-            none is taken.
+        least_share: of the inside; while no more of it is unseen, and the unseen is no way through its
+            bottom, none is taken.
     """
     taken = 0
     while taken < most and _is_more_to_see(cell, procedure.volume, least_share):
@@ -140,12 +141,12 @@ def take_next_best_views(
 
 
 def _is_more_to_see(cell: Cell, volume: TsdfVolume, least_share: float) -> bool:
-    """Whether views left more than a share of the inside of openings unseen, or whether it has a bottom."""
+    """Whether more than a share of the inside of openings is unseen, or there may be a hole in its bottom."""
     unseen = find_unseen_inside(volume, cell.settings.place.platform_height_m)
     return unseen.room_share(volume.voxel_m) > least_share or unseen.way_through(volume) is not None
 
 
-def _best_of_each_direction(views: list[ReachableView], worth: list[float]) -> list[int]:
+def _best_of_each_direction(views: list[ReachableView], worth: list[int]) -> list[int]:
     """Which view is worth most in each direction; those that are worth nothing are left out."""
     best: dict[tuple[float, float], int] = {}
     for k, view in enumerate(views):

@@ -11,7 +11,7 @@ from core.geometry import look_at
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.quality.cavity import coarse_volume, find_hidden_cavity
-from core.quality.next_views import BOTTOM_WORTH, propose_views, revealed_voxels, worth_of_voxels
+from core.quality.next_views import BOTTOM_WORTH, bottom_of, propose_views, revealed_voxels, worth_of
 from core.reconstruction.stage import reconstruct
 from tests.awake import in_time
 from tests.core.quality.studio import BOX, CAMERA, LOW_RINGS, PLATFORM_M, dome, on_platform, tube
@@ -85,22 +85,24 @@ def test_hundreds_of_candidates_take_less_than_two_seconds(hidden):
     in_time(process_time() - started, 2)
     assert len(candidates) > 450
     assert len({view.index for view in views}) == len(views) == 6
-    volume, cavity = hidden
+    is_bottom = bottom_of(*hidden, PLATFORM_M)
     left = revealed_voxels(*hidden, PLATFORM_M, candidates[[view.index for view in views]], CAMERA)
     gains = []
     for row, view in enumerate(views):
         new = left[row] & ~left[:row].any(axis=0)
         assert new.sum() == view.n_revealed_voxels
-        gains.append(new @ worth_of_voxels(volume, cavity, PLATFORM_M))
+        gains.append(worth_of(new[None], is_bottom)[0])
     assert gains == sorted(gains, reverse=True)
 
 
 def test_the_bottom_is_worth_more_than_what_lies_above(hidden):
     volume, cavity = hidden
-    worth = worth_of_voxels(volume, cavity, PLATFORM_M)
+    is_bottom = bottom_of(volume, cavity, PLATFORM_M)
     above_m = volume.centers_m(cavity.region)[:, 2] - PLATFORM_M
-    assert (worth[above_m < 0.008] == BOTTOM_WORTH).all() and (above_m < 0.008).any()
-    assert (worth[above_m > 0.02] == 1).all() and (above_m > 0.02).any()
+    assert is_bottom[above_m < 0.008].all() and (above_m < 0.008).any()
+    assert not is_bottom[above_m > 0.02].any() and (above_m > 0.02).any()
+    one_each = np.stack([is_bottom, ~is_bottom])
+    assert worth_of(one_each, is_bottom).tolist() == [BOTTOM_WORTH * is_bottom.sum(), (~is_bottom).sum()]
 
 
 def test_a_view_that_was_chosen_adds_nothing_again(hidden):
