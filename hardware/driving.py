@@ -13,7 +13,14 @@ from core.geometry import FloatArray
 from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from core.progress import Reporter
-from hardware.errors import DeviceError, RobotError, RobotLost, RobotNotReady, TrackingLost
+from hardware.errors import (
+    DeviceError,
+    ProgramStopped,
+    RobotError,
+    RobotLost,
+    RobotNotReady,
+    TrackingLost,
+)
 from hardware.interfaces import Move, Robot, RobotState
 from hardware.modes import SafetyMode, unreadiness
 
@@ -27,6 +34,8 @@ MAX_AGE_S = 0.5
 MAX_DEVIATION_RAD = 0.06
 """A servoed arm lags on its path, which is not a deviation from it."""
 _POLL_S = 0.005
+_CAUSE_WITHIN_S = 0.3
+"""So long a controller may take, when the arm is at rest, to say that its power has gone."""
 
 
 class StateLog(Protocol):
@@ -143,7 +152,10 @@ class WatchedArm:
             refuse_deviation(state, trajectory, margin)
             watch(state, handle.progress)
 
-        self._watch(handle, trajectory.duration_s, name, label, look)
+        try:
+            self._watch(handle, trajectory.duration_s, name, label, look)
+        except TrackingLost as lost:
+            raise self._cause(lost, handle) from None
         handle.wait(REST_WITHIN_S)
         self._log.state(name, self.ready_state())
 
@@ -175,6 +187,27 @@ class WatchedArm:
                     f"The arm did not finish '{label}' in time and was stopped; find out what holds it."
                 )
             time.sleep(_POLL_S)
+
+    def _cause(self, lost: TrackingLost, handle: Move) -> RobotError:
+        """Stop an arm that has left its path, and return the gravest thing to be seen then.
+
+        An arm whose power or program ends brakes beside its path, and its controller says so only afterwards.
+        """
+        self.stop()
+        deadline_s = time.monotonic() + _CAUSE_WITHIN_S
+        while time.monotonic() < deadline_s:
+            try:
+                self.ready_state()
+            except RobotError as graver:
+                return graver
+            time.sleep(_POLL_S)
+        try:
+            handle.wait(0.0)
+        except ProgramStopped as ended:
+            return ended
+        except RobotError:  # by our own stop, or what the driver says of the same deviation
+            return lost
+        return lost
 
     def _wait_for_rest(self) -> RobotState:
         deadline_s = time.monotonic() + REST_WITHIN_S
