@@ -235,11 +235,17 @@ class BulletWorld:
         """Return whether all particles are slower than that."""
         return self.top_speed_m_s() < below_m_s
 
+    def speeds_m_s(self) -> FloatArray:
+        """Return (N,) the speeds of all particles, NaN for those taken out."""
+        speeds = np.full(len(self.particle_ids), np.nan)
+        for index, body_id in enumerate(self.particle_ids):
+            if body_id is not None:
+                speeds[index] = hypot(*bullet.getBaseVelocity(body_id, physicsClientId=self._client)[0])
+        return speeds
+
     def top_speed_m_s(self) -> float:
         """Return the speed of the fastest particle."""
-        ids = [body_id for body_id in self.particle_ids if body_id is not None]
-        velocities = [bullet.getBaseVelocity(body_id, physicsClientId=self._client)[0] for body_id in ids]
-        return max((hypot(*velocity) for velocity in velocities), default=0.0)
+        return float(np.nanmax(self.speeds_m_s(), initial=0.0))
 
     def _look_after_particles(self) -> None:
         low, high = self._region_m

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.geometry import BoolArray, FloatArray
 from core.imagination.body import BodyFile
+from core.imagination.hollow_map import HollowMap
 from core.imagination.particle_shape import half_heights_m
 from core.mesh import TriangleMesh
 from core.parameters.bodies import ParticleParameters
@@ -15,11 +16,19 @@ from core.parameters.bodies import ParticleParameters
 
 @dataclass(frozen=True)
 class ObjectAtRest:
-    """What the physics needs to know of the object: its body, AABB (2, 3) and centre of mass (3,)."""
+    """What the physics needs to know of an object.
+
+    Attributes:
+        body: its shape.
+        aabb_m: (2, 3).
+        center_of_mass_m: (3,).
+        hollows: where candies cannot leave it by themselves; none if nobody asked.
+    """
 
     body: BodyFile
     aabb_m: FloatArray
     center_of_mass_m: FloatArray
+    hollows: HollowMap | None = None
 
     @classmethod
     def of(cls, surface: TriangleMesh, body: BodyFile, aabb_margin_m: float) -> ObjectAtRest:

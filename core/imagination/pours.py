@@ -6,14 +6,15 @@ The exits of a cup run are replayed onto the object, or cup and object are simul
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.collision import CollisionModel
 from core.geometry import FloatArray, make_pose, rotation_z, transform_points
 from core.imagination.body import BodyFile
-from core.imagination.bullet_world import CHECK_STEPS, BulletWorld
+from core.imagination.bullet_world import CHECK_STEPS, RESTING_M_S, BulletWorld
+from core.imagination.capacity.finding import hollows_of_body
 from core.imagination.context import ImaginationContext
 from core.imagination.cup import pour_duration_s
 from core.imagination.cup_run import CupRun, PouringCup
@@ -29,6 +30,8 @@ from core.workers import Task, report_fraction
 
 STAGE = "pouring"
 _REPORT_STEPS = 25
+_LOOKS_STILL_M_S = 0.2
+"""A recording ends with candies that jump no higher than 2 mm any more."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,7 @@ def imagine_pours(
     Raises:
         StageError: the cup cannot hold N_pour.
     """
-    parameters, target = context.parameters, context.target(model)
+    parameters, target = context.parameters, target_of_pours(context, model)
     pouring = parameters.pouring
     thetas = pour_directions_rad(footprint, pouring)
     indents = indentations_m(target.aabb_m, pouring)
@@ -111,6 +114,11 @@ def imagine_pours(
     recordings = [outcome.recording for outcome in outcomes if outcome.recording is not None]
     rows = tuple(tuple(recordings[i * N_INDENT : (i + 1) * N_INDENT]) for i in range(len(thetas)))
     return PourGrid(pouring.n_pour, n_in, n_spilled, thetas, indents, pivots, rows, n_cups)
+
+
+def target_of_pours(context: ImaginationContext, model: CollisionModel) -> ObjectAtRest:
+    """Return an object, with the hollows that tell when a pour into it is over."""
+    return replace(context.target(model), hollows=hollows_of_body(context, model))
 
 
 def pour_directions_rad(footprint: Footprint, pouring: PouringParameters) -> FloatArray:
@@ -170,7 +178,8 @@ def _replay(
         parameters.solver, parameters.particle, parameters.pouring.contact, target.aabb_m
     ) as world:
         world.add_fixed_body(target.body)
-        in_world = _let_fall(world, PouredCup(run, T_world_E), parameters, look)
+        still_m_s = _LOOKS_STILL_M_S if record else np.inf
+        in_world = _let_fall(world, target, PouredCup(run, T_world_E), parameters, still_m_s, look)
         final = world.poses()
 
     n_in = _count(final, parameters.pouring.n_pour, target, parameters)
@@ -185,21 +194,29 @@ def _replay_in_turn(target: ObjectAtRest, cups: Sequence[PouredCup], parameters:
         world.add_fixed_body(target.body)
         for index, cup in enumerate(cups):
             report_fraction(index / len(cups))
-            _let_fall(world, cup, parameters, lambda _: None)
+            still_m_s = np.inf if cup is cups[-1] else RESTING_M_S
+            _let_fall(world, target, cup, parameters, still_m_s)
         final = world.poses()
     n_poured = parameters.pouring.n_pour * len(cups)
     return PourOutcome(_count(final, n_poured, target, parameters), _n_fallen(final, target), None)
 
 
 def _let_fall(
-    world: BulletWorld, cup: PouredCup, parameters: Parameters, look: Callable[[int], None]
+    world: BulletWorld,
+    target: ObjectAtRest,
+    cup: PouredCup,
+    parameters: Parameters,
+    still_m_s: float,
+    look: Callable[[int], None] = lambda _: None,
 ) -> list[int]:
     """Let a cup's candies into the world as they left the cup, until all rest or the pour is over.
 
     Args:
         world: with the object, and what was poured into it before.
+        target: the object.
         cup: whose candies fall.
         parameters: of the pour.
+        still_m_s: slower than that is still enough for candies of which it is known that they stay.
         look: called with each step's number before it is made.
 
     Returns:
@@ -215,10 +232,20 @@ def _let_fall(
             world.add_particle(poses[candy], velocities[candy])
             in_world.append(candy)
         look(step)
-        if step % CHECK_STEPS == 0 and len(in_world) == len(order) and world.is_at_rest():
+        if step % CHECK_STEPS == 0 and len(in_world) == len(order) and _is_over(world, target, still_m_s):
             break
         world.step()
     return in_world
+
+
+def _is_over(world: BulletWorld, target: ObjectAtRest, still_m_s: float) -> bool:
+    """Whether candies rest, or those that did not fall past the object cannot leave it and are still."""
+    speeds_m_s = world.speeds_m_s()
+    top_speed_m_s = float(np.nanmax(speeds_m_s, initial=0.0))
+    if target.hollows is None or not RESTING_M_S <= top_speed_m_s < still_m_s:
+        return top_speed_m_s < RESTING_M_S
+    kept = target.hollows.keeps(world.poses()[:, :3], speeds_m_s)
+    return bool(kept[np.isfinite(speeds_m_s)].all())
 
 
 def _n_steps(parameters: Parameters) -> int:

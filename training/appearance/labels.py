@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from core.geometry import BoolArray, FloatArray
-from core.imagination.capacity.basin import Basin
 from core.imagination.capacity.water import find_basin
+from core.imagination.hollow_map import HollowMap
 from core.mesh import TriangleMesh
 from core.parameters.bodies import ParticleParameters
 from hardware.simulation.world import World
@@ -29,9 +29,8 @@ class Hollow:
     def __init__(self, mesh: TriangleMesh, world: World) -> None:
         """Fill it: what candies reach counts. The world is the object's, to look around in."""
         self._world = world
-        self._basin: Basin = _with_walls(
-            find_basin(mesh, ParticleParameters().height_m, _SMALLEST_ML, _LATTICE_POINTS)
-        )
+        basin = find_basin(mesh, ParticleParameters().height_m, _SMALLEST_ML, _LATTICE_POINTS)
+        self._map: HollowMap = _with_walls(basin.hollow_map)
 
     def contains(self, points_m: FloatArray, eye_m: FloatArray) -> BoolArray:
         """Whether points (N, 3) of a surface, as seen from `eye_m`, bound the hollow below its rim.
@@ -39,14 +38,14 @@ class Hollow:
         They lie below the rim, the line of sight comes in over the hollow, and on their level the object is
         all around: so an outer wall is none, also where a belly hangs over it, and no shoulder is.
         """
-        rims_m = self._basin.rim_at(points_m[:, :2])
+        rims_m = self._map.rim_at(points_m[:, :2])
         below = np.isfinite(rims_m) & (points_m[:, 2] < rims_m - _RIM_M)
         inside = np.zeros(len(points_m), dtype=np.bool_)
         if not below.any() or eye_m[2] <= rims_m[below].max():
             return inside
         share = (rims_m[below] - points_m[below, 2]) / (eye_m[2] - points_m[below, 2])
         entries_m = points_m[below] + share[:, None] * (eye_m - points_m[below])
-        inside[below] = np.isfinite(self._basin.rim_at(entries_m[:, :2]))
+        inside[below] = np.isfinite(self._map.rim_at(entries_m[:, :2]))
         inside[inside] = self._is_enclosed(points_m[inside], eye_m)
         return inside
 
@@ -61,13 +60,13 @@ class Hollow:
         return enclosed
 
 
-def _with_walls(basin: Basin) -> Basin:
-    """Return the basin with its map of rims grown by what lies beside the lattice's points."""
+def _with_walls(seen: HollowMap) -> HollowMap:
+    """Return the map with its rims grown by what lies beside the lattice's points."""
     from dataclasses import replace
 
     from scipy.ndimage import maximum_filter
 
-    steps = max(round(_REACH_M / basin.map_pitch_m), 1)
+    steps = max(round(_REACH_M / seen.pitch_m), 1)
     y, x = np.mgrid[-steps : steps + 1, -steps : steps + 1]
-    grown = maximum_filter(basin.rim_map_m, footprint=np.hypot(x, y) <= steps, mode="constant", cval=-np.inf)
-    return replace(basin, rim_map_m=grown)
+    grown = maximum_filter(seen.rim_m, footprint=np.hypot(x, y) <= steps, mode="constant", cval=-np.inf)
+    return replace(seen, rim_m=grown)

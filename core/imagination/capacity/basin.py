@@ -8,6 +8,7 @@ import numpy as np
 
 from core.geometry import FloatArray
 from core.imagination.capacity.stand_in import Surroundings
+from core.imagination.hollow_map import HollowMap
 
 ML = 1e6
 """Millilitres in a cubic metre."""
@@ -29,9 +30,7 @@ class Basin:
         around: what candies lie against when these hollows are full.
         mouth_m: width of the narrowest place that most candies must pass.
         narrow_ml: part of `water_ml` that lies where no candy goes.
-        rim_map_m: (X, Y) height of the rim of the hollow for candies there, minus infinity where none is.
-        map_origin_m: (2,) of its first point.
-        map_pitch_m: of its points.
+        hollow_map: of the hollows for candies.
     """
 
     water_ml: float
@@ -42,22 +41,12 @@ class Basin:
     around: Surroundings
     mouth_m: float
     narrow_ml: float
-    rim_map_m: FloatArray
-    map_origin_m: FloatArray
-    map_pitch_m: float
+    hollow_map: HollowMap
 
     @property
     def candies_ml(self) -> float:
         """Volume of the hollows for candies up to their rims."""
         return float(self.volumes_ml[-1]) if len(self.volumes_ml) else 0.0
-
-    def rim_at(self, places_m: FloatArray) -> FloatArray:
-        """Return (n,) heights of the rims at (n, 2) places; minus infinity where nothing is held, or NaN."""
-        last = np.array(self.rim_map_m.shape) - 1
-        found = np.rint((np.nan_to_num(places_m) - self.map_origin_m) / self.map_pitch_m).clip(0, last)
-        i, j = found.astype(np.int64).T
-        rims: FloatArray = self.rim_map_m[i, j]
-        return rims
 
     def level_m(self, volume_ml: float) -> float:
         """Height above the inner floor to which a volume fills the hollows for candies; NaN without one."""

@@ -118,7 +118,7 @@ def _inside(positions_m: FloatArray, aabb_m: FloatArray, plan: FillPlan) -> Floa
 
 def _level(positions_m: FloatArray, aabb_m: FloatArray, plan: FillPlan) -> FloatArray:
     """The same below the rim that is there."""
-    rims_m = np.minimum(plan.basin.rim_at(positions_m[:, :2]), aabb_m[1, 2])
+    rims_m = np.minimum(plan.basin.hollow_map.rim_at(positions_m[:, :2]), aabb_m[1, 2])
     return _below(positions_m, rims_m, aabb_m, plan)
 
 
@@ -296,16 +296,17 @@ def rain_places(basin: Basin, footprint_m: FloatArray, radius_m: float, apart_m:
     from scipy.ndimage import distance_transform_edt
     from scipy.spatial import cKDTree
 
-    is_hollow = np.isfinite(basin.rim_map_m)
+    seen = basin.hollow_map
+    is_hollow = np.isfinite(seen.rim_m)
     cells = np.argwhere(is_hollow)
     if not len(cells):
         return footprint_m
-    places = basin.map_origin_m + basin.map_pitch_m * cells
+    places = seen.origin_m + seen.pitch_m * cells
     away_m, _ = cKDTree(footprint_m).query(places)
     near: BoolArray = np.asarray(away_m) <= apart_m
     if not near.any():
         return footprint_m
-    places, room_m = places[near], basin.map_pitch_m * distance_transform_edt(is_hollow)[is_hollow][near]
+    places, room_m = places[near], seen.pitch_m * distance_transform_edt(is_hollow)[is_hollow][near]
     enough_m = min(radius_m, float(np.sort(room_m)[-min(_LEAST, len(room_m))]))
     clear: FloatArray = places[room_m >= enough_m]
     return clear

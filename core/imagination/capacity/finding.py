@@ -9,7 +9,8 @@ from core.collision import CollisionModel
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.stand_in import stand_in_for
 from core.imagination.context import ImaginationContext
-from core.imagination.particle_shape import particle_volume_m3
+from core.imagination.hollow_map import HollowMap
+from core.imagination.particle_shape import particle_extents_m, particle_volume_m3
 from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.workers import Task
@@ -23,6 +24,10 @@ It is asked of the surface before it was simplified, where that is at hand: pinh
 _SMALLEST_CANDIES = 1.0
 """A hollow counts when its bulk holds so many."""
 _USUAL_FRACTION = 0.6
+_THINNER = 0.9
+"""What cannot leave is asked of something thinner than a candy: drawn ones are up to 5 % smaller."""
+_COARSE_POINTS = 200_000
+"""0.06 s; of the hollows that a million points find, the volume is the same within 1.5 %."""
 
 Question = tuple[float, float, int]
 """Of a surface: thickness of what it shall hold (m), least volume that counts (ml), points of the lattice."""
@@ -45,6 +50,25 @@ def find_beside(
         context.spare.append((_task(surface, question), take))
     else:
         take(made)
+
+
+def hollows_of_body(context: ImaginationContext, model: CollisionModel) -> HollowMap | None:
+    """Return where a body keeps candies that nothing moves, whichever way they lie; none if it is not known.
+
+    Asked of the surface that the physics has, on a lattice that costs less than what it saves. Not known of
+    convex parts, which are another surface, and not asked where steps are never cut: the released code's
+    physics stays as it was.
+    """
+    parameters = context.parameters
+    if model.is_convex or parameters.solver.substeps == 1:
+        return None
+    thickness_m = _THINNER * float(particle_extents_m(parameters.particle).min())
+    question = thickness_m, _SMALLEST_CANDIES * usual_bulk_ml(parameters), _COARSE_POINTS
+    made: Basin | None = context.ahead.of(model.surface, question)
+    if made is None:
+        made = context.run([_task(model.surface, question)], STAGE)[0]
+        context.ahead.keep(model.surface, question, made)
+    return made.hollow_map
 
 
 def find_ahead(context: ImaginationContext, model: CollisionModel) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 from core.geometry import BoolArray, FloatArray, IntArray
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.stand_in import NOWHERE, Surroundings
+from core.imagination.hollow_map import HollowMap
 from core.mesh import TriangleMesh
 from core.voxel_groups import large_groups
 
@@ -53,9 +54,16 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
         around=_surroundings(lattice, candies),
         mouth_m=_mouth_m(lattice, candies),
         narrow_ml=float((water & ~candies).sum() * lattice.cell_m3 * ML),
-        rim_map_m=np.where(candies, rims_m, -np.inf).max(axis=2),
-        map_origin_m=lattice.origin_m[:2],
-        map_pitch_m=pitch,
+        hollow_map=_map(lattice, candies, rims_m),
+    )
+
+
+def _map(lattice: Lattice, held: BoolArray, rims_m: FloatArray) -> HollowMap:
+    return HollowMap(
+        origin_m=lattice.origin_m[:2],
+        pitch_m=float(lattice.pitch_m[0]),
+        rim_m=np.where(held, rims_m, -np.inf).max(axis=2),
+        floor_m=np.where(held, lattice.heights_m, np.inf).min(axis=2),
     )
 
 

@@ -15,7 +15,7 @@ from core.imagination.choice import choose_pour, papers_order, surest_first
 from core.imagination.context import ImaginationContext
 from core.imagination.cup_runs import CupRuns
 from core.imagination.object_at_rest import ObjectAtRest
-from core.imagination.pours import Pour, PouredCup, PourOutcome, in_turn_task
+from core.imagination.pours import Pour, PouredCup, PourOutcome, in_turn_task, target_of_pours
 from core.imagination.results import PourChoice, PourGrid
 from core.imagination.risk.drawing import draw_cups
 from core.imagination.risk.race import Race
@@ -93,7 +93,7 @@ def imagine_risk(
     Raises:
         StageError: the cup cannot hold N_pour.
     """
-    parameters, target = context.parameters, context.target(model)
+    parameters, target = context.parameters, target_of_pours(context, model)
     settings = parameters.risk
     if settings.n_tries == 0:
         return None
