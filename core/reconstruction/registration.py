@@ -215,24 +215,23 @@ def compare_views(
     pairs, pulls = np.zeros((n_views, n_views, 6, 6)), np.zeros((n_views, n_views, 6))
     square_m2, n_matches = np.zeros(n_views), np.zeros(n_views)
 
-    def match(of_view: slice) -> None:
-        _match(
-            surfaces.planes, points[of_view], normals[of_view], surfaces.view[of_view], surfaces.camera,
-            poses, center_m, reach_m, pairs, pulls, square_m2, n_matches,
+    starts = np.searchsorted(surfaces.view, np.arange(n_views + 1)).tolist()
+
+    def match(own: int) -> None:
+        of_view = slice(starts[own], starts[own + 1])
+        square_m2[own], n_matches[own] = _match(
+            surfaces.planes, poses, own, points[of_view], normals[of_view], surfaces.camera, center_m,
+            reach_m, pairs[own], pulls[own],
         )  # fmt: skip
 
     # Each view writes rows of its own, so that the result does not depend on the number of threads.
-    starts = np.searchsorted(surfaces.view, np.arange(n_views + 1))
-    in_threads(match, map(slice, starts[:-1].tolist(), starts[1:].tolist()))
+    in_threads(match, range(n_views))
     pairs += np.tril(pairs, -1).swapaxes(2, 3)
+    both = pairs + pairs.swapaxes(0, 1)
+    matrix = -both.swapaxes(1, 2)
+    each = np.arange(n_views)
+    matrix[each, :, each] += both.sum(axis=1)
     vector = pulls.sum(axis=0) - pulls.sum(axis=1)
-    matrix = np.zeros((n_views, 6, n_views, 6))
-    for i in range(n_views):
-        for j in range(n_views):
-            matrix[i, :, i] += pairs[i, j]
-            matrix[j, :, j] += pairs[i, j]
-            matrix[i, :, j] -= pairs[i, j]
-            matrix[j, :, i] -= pairs[i, j]
     return PairSums(matrix.reshape(6 * n_views, -1), vector.ravel(), square_m2, n_matches)
 
 
@@ -245,68 +244,86 @@ def _in_base(surfaces: ViewSurfaces, poses: FloatArray) -> tuple[FloatArray, Flo
 @numba.njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
 def _match(
     planes: PlaneImage,
+    poses: npt.NDArray[np.float64],
+    own: int,
     points: npt.NDArray[np.float64],
     normals: npt.NDArray[np.float64],
-    view: npt.NDArray[np.int64],
     camera: npt.NDArray[np.float64],
-    poses: npt.NDArray[np.float64],
     center: npt.NDArray[np.float64],
     reach_m: float,
     pairs: npt.NDArray[np.float64],
     pulls: npt.NDArray[np.float64],
-    square_m2: npt.NDArray[np.float64],
-    n_matches: npt.NDArray[np.float64],
-) -> None:
-    """Add every point against the plane it meets in every other view; of `pairs` the lower triangles."""
-    step = np.empty(6)
-    found = np.empty(4)
-    for index in range(len(points)):
-        point, own = points[index], view[index]
-        for other in range(len(poses)):
-            if other == own:
-                continue
-            _plane_at(planes[other], point, poses[other], camera, found)
-            if np.isnan(found[3]) or abs(found[3]) >= reach_m:
-                continue
-            normal = normals[index]
-            if normal[0] * found[0] + normal[1] * found[1] + normal[2] * found[2] < SMALLEST_COSINE:
-                continue
-            arm = point - center
-            step[0] = arm[1] * found[2] - arm[2] * found[1]
-            step[1] = arm[2] * found[0] - arm[0] * found[2]
-            step[2] = arm[0] * found[1] - arm[1] * found[0]
-            step[3:] = found[:3]
-            weight = (1.0 - (found[3] / reach_m) ** 2) ** 2
-            for a in range(6):
-                pulls[own, other, a] += weight * step[a] * found[3]
-                for b in range(a + 1):
-                    pairs[own, other, a, b] += weight * step[a] * step[b]
-            square_m2[own] += found[3] ** 2
-            n_matches[own] += 1.0
+) -> tuple[float, float]:
+    """Add a view's points against the planes they meet in the others; return squares' sum and number.
+
+    One view after the other, so that its planes stay in the processor's cache.
+    """
+    square_m2 = n_matches = 0.0
+    for other in range(len(poses)):
+        if other != own:
+            square, n = _match_one(
+                planes[other],
+                poses[other],
+                points,
+                normals,
+                camera,
+                center,
+                reach_m,
+                pairs[other],
+                pulls[other],
+            )
+            square_m2 += square
+            n_matches += n
+    return square_m2, n_matches
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
-def _plane_at(
+def _match_one(
     planes: PlaneImage,
-    point: npt.NDArray[np.float64],
     pose: npt.NDArray[np.float64],
+    points: npt.NDArray[np.float64],
+    normals: npt.NDArray[np.float64],
     camera: npt.NDArray[np.float64],
-    found: npt.NDArray[np.float64],
-) -> None:
-    """Write the normal (base frame, towards the camera) and the point's height over the plane it meets."""
-    found[3] = np.nan
-    dx, dy, dz = point[0] - pose[0, 3], point[1] - pose[1, 3], point[2] - pose[2, 3]
-    x = pose[0, 0] * dx + pose[1, 0] * dy + pose[2, 0] * dz
-    y = pose[0, 1] * dx + pose[1, 1] * dy + pose[2, 1] * dz
-    z = pose[0, 2] * dx + pose[1, 2] * dy + pose[2, 2] * dz
-    if z <= 0:
-        return
-    column = int(np.floor((camera[0] * x / z + camera[2]) / STRIDE + 0.5))
-    row = int(np.floor((camera[1] * y / z + camera[3]) / STRIDE + 0.5))
-    if not (0 <= row < planes.shape[0] and 0 <= column < planes.shape[1]):
-        return
-    a, b, c = planes[row, column, 0], planes[row, column, 1], planes[row, column, 2]
-    length = np.sqrt(a * a + b * b + c * c)
-    for axis in range(3):
-        found[axis] = -(pose[axis, 0] * a + pose[axis, 1] * b + pose[axis, 2] * c) / length
-    found[3] = (1.0 - (a * x + b * y + c * z)) / length
+    center: npt.NDArray[np.float64],
+    reach_m: float,
+    pairs: npt.NDArray[np.float64],
+    pulls: npt.NDArray[np.float64],
+) -> tuple[float, float]:
+    """Add them against the planes of one other view; of `pairs` (6, 6) the lower triangle."""
+    step = np.empty(6)
+    square_m2 = n_matches = 0.0
+    for index in range(len(points)):
+        px, py, pz = points[index, 0], points[index, 1], points[index, 2]
+        dx, dy, dz = px - pose[0, 3], py - pose[1, 3], pz - pose[2, 3]
+        z = pose[0, 2] * dx + pose[1, 2] * dy + pose[2, 2] * dz
+        if z <= 0:
+            continue
+        x = pose[0, 0] * dx + pose[1, 0] * dy + pose[2, 0] * dz
+        y = pose[0, 1] * dx + pose[1, 1] * dy + pose[2, 1] * dz
+        column = int(np.floor((camera[0] * x / z + camera[2]) / STRIDE + 0.5))
+        row = int(np.floor((camera[1] * y / z + camera[3]) / STRIDE + 0.5))
+        if not (0 <= row < planes.shape[0] and 0 <= column < planes.shape[1]):
+            continue
+        a, b, c = planes[row, column, 0], planes[row, column, 1], planes[row, column, 2]
+        length = np.sqrt(a * a + b * b + c * c)
+        height_m = (1.0 - (a * x + b * y + c * z)) / length
+        if np.isnan(height_m) or abs(height_m) >= reach_m:
+            continue
+        # The plane's normal in the base frame, towards the camera.
+        nx = -(pose[0, 0] * a + pose[0, 1] * b + pose[0, 2] * c) / length
+        ny = -(pose[1, 0] * a + pose[1, 1] * b + pose[1, 2] * c) / length
+        nz = -(pose[2, 0] * a + pose[2, 1] * b + pose[2, 2] * c) / length
+        if normals[index, 0] * nx + normals[index, 1] * ny + normals[index, 2] * nz < SMALLEST_COSINE:
+            continue
+        arm_x, arm_y, arm_z = px - center[0], py - center[1], pz - center[2]
+        step[0], step[3] = arm_y * nz - arm_z * ny, nx
+        step[1], step[4] = arm_z * nx - arm_x * nz, ny
+        step[2], step[5] = arm_x * ny - arm_y * nx, nz
+        weight = (1.0 - (height_m / reach_m) ** 2) ** 2
+        for k in range(6):
+            pulls[k] += weight * step[k] * height_m
+            for m in range(k + 1):
+                pairs[k, m] += weight * step[k] * step[m]
+        square_m2 += height_m**2
+        n_matches += 1.0
+    return square_m2, n_matches
