@@ -13,12 +13,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import product
+from math import ceil, floor
 
 import numba
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry import FloatArray, IntArray, transform_points
+from core.geometry import FloatArray, IntArray, invert_pose, transform_points
 from core.scan.model import CropBox, DepthImage, Intrinsics, RgbdFrame, Scan
 from core.threads import in_threads
 
@@ -38,13 +40,44 @@ SMALLEST_COSINE = 0.8
 """Between two views' directions of one surface: keeps the two sides of a wall apart."""
 
 
-def fit_planes(depth_m: DepthImage, intrinsics: Intrinsics, max_depth_m: float) -> PlaneImage:
+@dataclass(frozen=True)
+class PixelWindow:
+    """Part of an image, from the first pixel (row, column) up to, but not with, the last one."""
+
+    first: tuple[int, int]
+    last: tuple[int, int]
+
+    @classmethod
+    def whole(cls, shape: tuple[int, int]) -> PixelWindow:
+        """All of an image (H, W)."""
+        return cls((0, 0), shape)
+
+    @classmethod
+    def of_box(cls, box: CropBox, frame: RgbdFrame, intrinsics: Intrinsics) -> PixelWindow:
+        """Where a view shows a box (base frame); all of it if the box reaches behind the camera."""
+        height, width = frame.depth_m.shape
+        corners = np.array(list(product(*zip(box.min_m, box.max_m, strict=True))))
+        x, y, z = transform_points(invert_pose(frame.T_base_camera), corners).T
+        if z.min() <= 0:
+            return cls.whole((height, width))
+        rows = intrinsics.fy * y / z + intrinsics.cy
+        columns = intrinsics.fx * x / z + intrinsics.cx
+        top, bottom = np.clip([floor(rows.min()), ceil(rows.max()) + 1], 0, height).tolist()
+        left, right = np.clip([floor(columns.min()), ceil(columns.max()) + 1], 0, width).tolist()
+        return cls((top, left), (bottom, right))
+
+
+def fit_planes(
+    depth_m: DepthImage, intrinsics: Intrinsics, max_depth_m: float, window: PixelWindow | None = None
+) -> PlaneImage:
     """Return planes (H / 2, W / 2, 3) of every second pixel (row, column), NaN where there is none.
 
-    A plane (a, b, c) holds the points with `a x + b y + c z = 1` in the camera's frame, in 1/m.
+    A plane (a, b, c) holds the points with `a x + b y + c z = 1` in the camera's frame, in 1/m. Outside the
+    window none is looked for.
     """
     depth_m = np.ascontiguousarray(depth_m, dtype=np.float32)
-    planes: PlaneImage = _fit_planes(depth_m, _pixels(intrinsics), max_depth_m)
+    window = window or PixelWindow.whole(depth_m.shape)
+    planes: PlaneImage = _fit_planes(depth_m, _pixels(intrinsics), max_depth_m, window.first, window.last)
     return planes
 
 
@@ -64,11 +97,17 @@ def facing_image(planes: PlaneImage, shape: tuple[int, int], intrinsics: Intrins
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")  # type: ignore[untyped-decorator]
-def _fit_planes(depth_m: DepthImage, camera: npt.NDArray[np.float64], max_depth_m: float) -> PlaneImage:
+def _fit_planes(
+    depth_m: DepthImage,
+    camera: npt.NDArray[np.float64],
+    max_depth_m: float,
+    first: tuple[int, int],
+    last: tuple[int, int],
+) -> PlaneImage:
     height, width = depth_m.shape
     planes = np.full(((height + 1) // STRIDE, (width + 1) // STRIDE, 3), np.nan, np.float32)
-    for row in range(0, height, STRIDE):
-        for column in range(0, width, STRIDE):
+    for row in range(first[0] // STRIDE * STRIDE, last[0], STRIDE):
+        for column in range(first[1] // STRIDE * STRIDE, last[1], STRIDE):
             middle_m = depth_m[row, column]
             if middle_m > 0 and middle_m <= max_depth_m:
                 _fit_one(depth_m, row, column, camera, planes[row // STRIDE, column // STRIDE])

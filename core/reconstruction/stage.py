@@ -21,7 +21,13 @@ from core.progress import Reporter
 from core.reconstruction.floor import SeenFloor, keep_floor, seen_floor
 from core.reconstruction.pose_health import Plane, PoseHealth, find_tables, pose_health_of
 from core.reconstruction.refinement import refine_poses
-from core.reconstruction.registration import PlaneImage, facing_image, fit_planes, view_surfaces
+from core.reconstruction.registration import (
+    PixelWindow,
+    PlaneImage,
+    facing_image,
+    fit_planes,
+    view_surfaces,
+)
 from core.reconstruction.result import Reconstruction, Refinement
 from core.reconstruction.segmentation import (
     Part,
@@ -36,7 +42,7 @@ from core.reconstruction.segmentation import (
 )
 from core.reconstruction.tsdf import DistanceGrid, TsdfVolume, extract_surface, largest_piece
 from core.reconstruction.unseen import find_unseen_inside
-from core.scan.model import CropBox, RgbdFrame, Scan, crop_box_of
+from core.scan.model import CropBox, RgbdFrame, Scan, crop_box, crop_box_of
 from core.threads import in_threads
 from core.unseen_readings import UnseenReadings
 
@@ -53,6 +59,8 @@ BEHIND_PER_FALLOFF = 2.5
 """There the weight has fallen to 0.002."""
 VOXELS_WITHOUT_TABLE = 5.0
 """The released code's, when the pose error is unknown."""
+AROUND_OBJECT_M = 0.03
+"""Corrected poses move the object by millimetres."""
 SMALLEST_UNSEEN_ML = 2.0
 """Room for two candies."""
 SURFACE_PER_TABLE_ERROR = 1.8
@@ -73,8 +81,8 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
     health = pose_health_of(scan, tables, crop_box_of(scan, parameters))
     _warn_of_stray_views(health, reporter)
     steps = Steps(reporter, len(scan.frames) * _n_fusions(parameters))
-    planes = None if _is_plain(parameters) else fit_all_planes(scan, parameters.max_depth_m, reporter)
     found = _find(scan, parameters, view_error_m(health, None), steps)
+    planes = None if _is_plain(parameters) else _fit_all_planes(scan, found, parameters, reporter)
     refinement = None
     if parameters.refine_poses and planes is not None:
         block = found.part.box(found.volume)
@@ -275,16 +283,22 @@ class Steps:
         self._reporter.raise_if_cancelled()
 
 
-def fit_all_planes(scan: Scan, max_depth_m: float, reporter: Reporter) -> tuple[PlaneImage, ...]:
-    """Fit planes in all views.
+def _fit_all_planes(
+    scan: Scan, found: _Found, parameters: ReconstructionParameters, reporter: Reporter
+) -> tuple[PlaneImage, ...]:
+    """Fit planes in all views where they show the object, down to the crop box's floor.
 
     Raises:
         Cancelled: the user asked to stop.
     """
+    block, floor_m = found.part.box(found.volume), crop_box_of(scan, parameters).min_m[2]
+    low, high = np.array([*block.min_m[:2], min(block.min_m[2], floor_m)]), np.array(block.max_m)
+    around = crop_box(low - AROUND_OBJECT_M, high + AROUND_OBJECT_M)
 
     def fit(frame: RgbdFrame) -> PlaneImage:
         reporter.raise_if_cancelled()
-        return fit_planes(frame.depth_m, scan.intrinsics, max_depth_m)
+        window = PixelWindow.of_box(around, frame, scan.intrinsics)
+        return fit_planes(frame.depth_m, scan.intrinsics, parameters.max_depth_m, window)
 
     return tuple(in_threads(fit, scan.frames))
 

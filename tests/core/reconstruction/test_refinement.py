@@ -7,6 +7,7 @@ import pytest
 
 from core.geometry import invert_pose, make_pose, transform_points
 from core.parameters import load_preset
+from core.reconstruction.registration import PixelWindow
 from core.reconstruction.stage import reconstruct
 from core.scan import Scan
 
@@ -101,3 +102,12 @@ def test_one_view_alone_is_not_corrected(bowl_scan, parameters, listener):
     refinement = reconstruct(alone, parameters, listener).refinement
     assert refinement.residual_after_m is None and refinement.view_error_m is None
     assert refinement.views[0].shift_m < 1e-6
+
+
+def test_planes_beside_the_object_change_nothing(simulated, parameters, listener, monkeypatch):
+    scan = simulated("thin_cup", translation_error_m=0.001, rotation_error_rad=0.003)
+    found = reconstruct(scan, parameters, listener)
+    monkeypatch.setattr(PixelWindow, "of_box", lambda _, frame, __: PixelWindow.whole(frame.depth_m.shape))
+    whole = reconstruct(scan, parameters, listener)
+    np.testing.assert_array_equal(found.mesh.vertices_m, whole.mesh.vertices_m)
+    assert found.refinement.residual_after_m == whole.refinement.residual_after_m
