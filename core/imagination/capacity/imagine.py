@@ -135,7 +135,7 @@ def _below_an_arch(
     parameters, target, basin = context.parameters, context.target(model), plan.basin
 
     def has_opening(width_m: float) -> bool:
-        return bool(context.run([_opening_task(model.surface, drop, width_m)], STAGE)[0])
+        return bool(context.run([_opening_task(model.surface, drop, basin, width_m)], STAGE)[0])
 
     thinnest_m = float(particle_extents_m(parameters.particle).min())
     if _is_mostly_heaped(fillings) and has_opening(_SMALLER * thinnest_m):
@@ -157,10 +157,10 @@ def _is_mostly_heaped(fillings: tuple[Filling, ...]) -> bool:
     return sum(one.n_level for one in fillings) < _HEAPED * sum(one.n_kept for one in fillings)
 
 
-def _opening_task(surface: TriangleMesh, drop: Drop, width_m: float) -> Task:
+def _opening_task(surface: TriangleMesh, drop: Drop, basin: Basin, width_m: float) -> Task:
     """Whether something of a width could fall through below the candies that stayed."""
     places_m = drop.drop_positions_m[drop.retained, :2]
-    return Task(has_opening_below, (surface, places_m, width_m), 1.0)
+    return Task(has_opening_below, (surface, places_m, basin.hollow_map, width_m), 1.0)
 
 
 def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:

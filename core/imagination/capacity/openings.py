@@ -5,20 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 from core.geometry import BoolArray, FloatArray
+from core.imagination.hollow_map import HollowMap
 from core.mesh import TriangleMesh
 
 _PIXELS = 20
 """Across the opening that is looked for; what is thinner than one still closes it, for outlines are drawn."""
 
 
-def has_opening_below(mesh: TriangleMesh, places_m: FloatArray, width_m: float) -> bool:
+def has_opening_below(mesh: TriangleMesh, places_m: FloatArray, hollows: HollowMap, width_m: float) -> bool:
     """Return whether something could fall straight through a mesh between the places where candies stayed.
 
-    A way down that bends is not found.
+    Or where candies are held: three that stayed in a tube of two candies' width leave half of it beside their
+    triangle. A way down that bends is not found.
 
     Args:
         mesh: at rest; its upward axis is z.
         places_m: (n, 2).
+        hollows: for candies.
         width_m: of what could fall.
     """
     from scipy.ndimage import distance_transform_edt
@@ -31,6 +34,8 @@ def has_opening_below(mesh: TriangleMesh, places_m: FloatArray, width_m: float) 
     openings_m = origin_m + pitch * np.argwhere(room_m >= width_m / 2)
     if not len(openings_m):
         return False
+    if np.isfinite(hollows.rim_at(openings_m)).any():
+        return True
     try:
         between = Delaunay(places_m).find_simplex(openings_m) >= 0
     except (QhullError, ValueError):  # too few places to be between

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from core.imagination.capacity.openings import has_opening_below
+from core.imagination.capacity import openings
+from core.imagination.capacity.water import find_basin
 from core.mesh import TriangleMesh
 from core.mesh_topology import join
 from tests.core.imagination.capacity.conftest import open_box, turned
@@ -11,6 +12,11 @@ from tests.core.imagination.rendering.conftest import box_mesh
 
 WIDTH_M = 0.0049
 """The least thickness of a candy that is 0.7 times as large."""
+
+
+def has_opening_below(mesh, places_m, width_m):
+    hollows = find_basin(mesh, 0.0132, 1.0, 100_000).hollow_map
+    return openings.has_opening_below(mesh, places_m, hollows, width_m)
 
 
 def ring_of_places(radius_m, n=24, center_m=(0.0, 0.0)):
@@ -45,6 +51,16 @@ def test_a_frame_with_a_gap_in_it_has_one():
 
 def test_too_few_places_to_be_between_leave_it_open():
     assert has_opening_below(funnel(0.02), np.array([[0.03, 0.0]]), WIDTH_M)
+
+
+def test_what_holds_candies_has_one_wherever_the_last_ones_stayed():
+    """Of the four corners of a grid above a pipe one lost its candies: between the others is no opening."""
+    pipe = [(0.006, 0), (0.016, 0), (0.016, 0.1), (0.014, 0.1), (0.014, 0.002), (0.006, 0.002), (0.006, 0)]
+    beside = np.array([[0.009, 0.009], [0.009, -0.007], [0.003, 0.009]])
+    assert has_opening_below(turned(pipe), beside, 0.0085)
+    assert not has_opening_below(turned(pipe), beside, 0.0125)
+    closed = turned([(0, 0), *pipe[1:5], (0, 0.002)])
+    assert not has_opening_below(closed, beside, 0.0085)
 
 
 def test_bars_thinner_than_a_lattice_would_see_close_what_is_between_them():
