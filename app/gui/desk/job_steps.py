@@ -6,18 +6,18 @@ import time
 from collections.abc import Callable, Iterable
 
 TYPICAL_S = {
-    "import": 3.0,
-    "reconstruction": 2.2,
+    "import": 1.3,
+    "reconstruction": 0.8,
     "quality": 0.7,
     "colors": 0.2,
-    "collision": 0.6,
-    "containability": 3.7,
-    "capacity": 3.1,
-    "retention": 4.5,
-    "pouring": 16.5,
-    "risk": 7.6,
-    "motion": 2.7,
-    "evidence": 15.4,
+    "collision": 0.1,
+    "containability": 1.2,
+    "capacity": 1.2,
+    "retention": 1.7,
+    "pouring": 3.6,
+    "risk": 1.3,
+    "motion": 1.2,
+    "evidence": 6.6,
 }
 """Of each step, for a mug on two cores; only their ratios matter once a job has begun."""
 _SOONEST = 0.08
