@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,10 +13,12 @@ MAX_MEAN_DEVIATION_M = 0.0005
 MAX_USUAL_DEVIATION_M = 0.0012
 """Of 99 % of the vertices; decision 0002."""
 _RELENT = 1.5
+_FINE = 10
+"""Times the wanted faces are kept at first: a second try begins there, and costs a tenth of the first."""
+_AGGRESSIVENESS = 3
+"""How fast the first step's error may grow from pass to pass; with less more faces are left than wanted."""
 _MOST = 4
 """Times the wanted faces that nearness alone is worth: Bullet's time grows with them."""
-_AGGRESSIVENESS = 3
-"""How fast the error may grow from pass to pass; with less more faces are left than wanted."""
 _N_SAMPLES = 20_000
 
 
@@ -23,29 +26,60 @@ def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
     """Reduce a mesh to `max_faces` by quadric error (Garland and Heckbert 1997); no hole comes into it.
 
     A mesh of no more faces is returned as it is. Where decimation runs out of faces that it may remove
-    without turning others round, it ruins the shape in search of more: if the mesh's vertices end up more
-    than 0.5 mm from the new surface on average, more faces are kept. Up to four times as many are, too,
-    where one vertex in a hundred is more than 1.2 mm from it: thin walls suffer, and their pinholes grow,
-    before the average tells. A rough surface never gets there, and needs not. The two sides of a thin wall
-    may meet in an edge of four faces.
+    without turning others round, it ruins the shape in search of more (a teapot lost its lower 17 mm): if the
+    mesh's vertices end up more than 0.5 mm from the new surface on average, more faces are kept. Up to four
+    times as many are, too, where one vertex in a hundred is more than 1.2 mm from it: thin walls suffer, and
+    their pinholes grow, before the average tells. A rough surface never gets there, and needs not.
+    The two sides of a thin wall may meet in an edge of four faces.
     """
-    n_faces = max_faces
+    fine = _finely_decimated(mesh, _FINE * max_faces)
+
+    def serves(coarse: TriangleMesh, n_faces: int) -> bool:
+        deviation = _deviation(mesh, coarse)
+        return deviation.is_near or (deviation.is_in_shape and n_faces * _RELENT > _MOST * max_faces)
+
+    return _decimated(fine, max_faces, serves)
+
+
+def _finely_decimated(mesh: TriangleMesh, n_faces: int) -> TriangleMesh:
+    """Reduce a mesh as far as its shape is hardly touched (0.02 mm), ten times as fast as Open3D does.
+
+    Not further: with fewer faces pinholes in thin walls grow more than with Open3D's (decision 0050).
+    """
+    from fast_simplification import simplify as decimate
+
+    if len(mesh.faces) <= n_faces:
+        return mesh
+    vertices, faces = decimate(
+        mesh.vertices_m, mesh.faces.astype(np.int32), target_count=n_faces, agg=_AGGRESSIVENESS
+    )
+    return TriangleMesh(np.array(vertices, dtype=float), np.array(faces, dtype=np.int64))
+
+
+def _decimated(mesh: TriangleMesh, n_faces: int, serves: Callable[[TriangleMesh, int], bool]) -> TriangleMesh:
+    """Return the mesh with so many faces, or with as many more as it takes to serve."""
     while n_faces < len(mesh.faces):
         coarse = _with_faces(mesh, n_faces)
-        deviation = _deviation(mesh, coarse)
-        if deviation.is_near or (deviation.is_in_shape and n_faces * _RELENT > _MOST * max_faces):
+        if serves(coarse, n_faces):
             return coarse
         n_faces = int(n_faces * _RELENT)
     return mesh
 
 
 def _with_faces(mesh: TriangleMesh, n_faces: int) -> TriangleMesh:
-    from fast_simplification import simplify as decimate
+    body = _to_open3d(mesh).simplify_quadric_decimation(n_faces)
+    return _from_open3d(body.remove_degenerate_triangles().remove_unreferenced_vertices())
 
-    vertices, faces = decimate(
-        mesh.vertices_m, mesh.faces.astype(np.int32), target_count=n_faces, agg=_AGGRESSIVENESS
-    )
-    return TriangleMesh(np.array(vertices, dtype=float), np.array(faces, dtype=np.int64))
+
+def _to_open3d(mesh: TriangleMesh) -> Any:
+    import open3d as o3d
+
+    vertices, faces = mesh.vertices_m, mesh.faces.astype(np.int32)
+    return o3d.geometry.TriangleMesh(o3d.utility.Vector3dVector(vertices), o3d.utility.Vector3iVector(faces))
+
+
+def _from_open3d(body: Any) -> TriangleMesh:
+    return TriangleMesh(np.array(body.vertices, dtype=float), np.array(body.triangles, dtype=np.int64))
 
 
 class _Deviation(NamedTuple):
