@@ -44,7 +44,8 @@ def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
 def _finely_decimated(mesh: TriangleMesh, n_faces: int) -> TriangleMesh:
     """Reduce a mesh as far as its shape is hardly touched (0.02 mm), ten times as fast as Open3D does.
 
-    Not further: with fewer faces pinholes in thin walls grow more than with Open3D's (decision 0050).
+    Not further: with fewer faces pinholes in thin walls grow more than with Open3D's (decision 0050). Where
+    the quick way loses the shape, as of faces that share no vertices, Open3D goes all of it.
     """
     from fast_simplification import simplify as decimate
 
@@ -53,7 +54,10 @@ def _finely_decimated(mesh: TriangleMesh, n_faces: int) -> TriangleMesh:
     vertices, faces = decimate(
         mesh.vertices_m, mesh.faces.astype(np.int32), target_count=n_faces, agg=_AGGRESSIVENESS
     )
-    return TriangleMesh(np.array(vertices, dtype=float), np.array(faces, dtype=np.int64))
+    fine = TriangleMesh(np.array(vertices, dtype=float), np.array(faces, dtype=np.int64))
+    if _deviation(mesh, fine).is_near:
+        return fine
+    return _decimated(mesh, n_faces, lambda coarse, _: _deviation(mesh, coarse).is_in_shape)
 
 
 def _decimated(mesh: TriangleMesh, n_faces: int, serves: Callable[[TriangleMesh, int], bool]) -> TriangleMesh:

@@ -292,7 +292,7 @@ def _fit_all_planes(
         Cancelled: the user asked to stop.
     """
     block, floor_m = found.part.box(found.volume), crop_box_of(scan, parameters).min_m[2]
-    low, high = np.array([*block.min_m[:2], min(block.min_m[2], floor_m)]), np.array(block.max_m)
+    low, high = np.array([*block.min_m[:2], floor_m]), np.array(block.max_m)
     around = crop_box(low - AROUND_OBJECT_M, high + AROUND_OBJECT_M)
 
     def fit(frame: RgbdFrame) -> PlaneImage:

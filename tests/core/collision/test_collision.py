@@ -77,6 +77,15 @@ def test_huge_meshes_become_as_small() -> None:
     assert coarse.volume_m3 == pytest.approx(ball.volume_m3, rel=0.01)
 
 
+def test_faces_that_share_no_vertices_keep_the_shape() -> None:
+    ball = trimesh.creation.icosphere(subdivisions=6, radius=0.05)
+    soup = TriangleMesh(
+        np.array(ball.triangles).reshape(-1, 3), np.arange(3 * len(ball.faces)).reshape(-1, 3)
+    )
+    coarse = simplify(soup, 3000)
+    assert SurfaceDistance(coarse).of_m(soup.vertices_m).mean() < 0.0005
+
+
 def test_a_mesh_that_would_be_ruined_keeps_more_faces(shared_data: Path) -> None:
     path = shared_data / "objects/meshes/cdb_teapot.obj"
     teapot = read_mesh(path, Reporter())

@@ -53,9 +53,8 @@ def test_any_size_of_image(shape):
 @pytest.mark.parametrize("window", [PixelWindow((11, 20), (50, 61)), PixelWindow((0, 0), (0, 0))])
 def test_in_a_window_the_planes_are_the_same_and_outside_there_are_none(window):
     inside = np.zeros((40, 50), dtype=bool)
-    inside[window.first[0] // 2 : -(-window.last[0] // 2), window.first[1] // 2 : -(-window.last[1] // 2)] = (
-        True
-    )
+    first, end = np.array(window.first) // STRIDE, -(-np.array(window.last) // STRIDE)
+    inside[first[0] : end[0], first[1] : end[1]] = True
     whole, some = fit_planes(slope(), CAMERA, 6.0), fit_planes(slope(), CAMERA, 6.0, window)
     np.testing.assert_array_equal(some[inside], whole[inside])
     assert np.isnan(some[~inside]).all()
