@@ -22,6 +22,7 @@ def stage_words(stage: str) -> str:
         "containability": translate("Stage", "Dropping candies"),
         "capacity": translate("Stage", "Filling it with candies"),
         "retention": translate("Stage", "Tilting it until candies fall out"),
+        "hollows": translate("Stage", "Finding its hollows"),
         "cup": translate("Stage", "Simulating the cup"),
         "pouring": translate("Stage", "Simulating pours"),
         "risk": translate("Stage", "Trying the best pours with disturbances"),

@@ -16,6 +16,8 @@ from core.parameters import Parameters
 from core.workers import Task
 
 STAGE = "capacity"
+HOLLOWS_STAGE = "hollows"
+"""Another word: what only ends pours earlier is no filling."""
 HALF = 0.5
 """Candies half as large are asked about; a scan has gaps of its own that smaller ones would pass.
 
@@ -66,7 +68,7 @@ def hollows_of_body(context: ImaginationContext, model: CollisionModel) -> Hollo
     question = thickness_m, _SMALLEST_CANDIES * usual_bulk_ml(parameters), _COARSE_POINTS
     made: Basin | None = context.ahead.of(model.surface, question)
     if made is None:
-        made = context.run([_task(model.surface, question)], STAGE)[0]
+        made = context.run([_task(model.surface, question)], HOLLOWS_STAGE)[0]
         context.ahead.keep(model.surface, question, made)
     return made.hollow_map
 
