@@ -98,7 +98,8 @@ class Recorder(QObject):
         if self._n_equal < _MOST_EQUAL:
             self.n_frames += 1
             assert self._ffmpeg.stdin is not None
-            self._ffmpeg.stdin.write(_ringed(image, self._walk.clicked).constBits())
+            shown = _ringed(image, self._walk.clicked)  # Its bits are its own: it must outlive the writing.
+            self._ffmpeg.stdin.write(shown.constBits())
 
 
 def _ringed(image: QImage, clicked: tuple[QPoint, float] | None) -> QImage:
@@ -138,6 +139,7 @@ def _finish(raw: Path, n_frames: int, film: Path, poster: Path) -> None:
 def main() -> None:
     """Write `tour.mp4` and `tour.png` into the folder given."""
     target = Path(sys.argv[1])
+    target.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as home:
         os.environ["XDG_CONFIG_HOME"] = home
         os.environ[SESSIONS_VARIABLE] = f"{home}/sessions"
