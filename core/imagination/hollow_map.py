@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -34,6 +35,19 @@ class HollowMap:
         i, j = self._nearest(places_m)
         rims: FloatArray = self.rim_m[i, j]
         return rims
+
+    def room_at(self, places_m: FloatArray) -> FloatArray:
+        """Return (n,) distances of (n, 2) places from the nearest one where nothing is held; there, zero."""
+        i, j = self._nearest(places_m)
+        rooms: FloatArray = self._room_m[i, j]
+        return rooms
+
+    @cached_property
+    def _room_m(self) -> FloatArray:
+        from scipy.ndimage import distance_transform_edt  # not in the window
+
+        rooms: FloatArray = self.pitch_m * distance_transform_edt(np.isfinite(self.rim_m))
+        return rooms
 
     def keeps(self, positions_m: FloatArray, speeds_m_s: FloatArray) -> BoolArray:
         """Return (n,) whether particles lie in a hollow, too slow to rise to its rim.

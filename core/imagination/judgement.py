@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from core.collision import CollisionModel
-from core.errors import StageError
 from core.files import read_json, write_json
+from core.imagination.capacity.filled import fill_beside
 from core.imagination.capacity.finding import find_ahead
-from core.imagination.capacity.imagine import hull_share, imagine_capacity, with_hidden
+from core.imagination.capacity.imagine import bulk_share, hull_share, imagine_capacity, with_hidden
 from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
-from core.imagination.drop import drop_task, imagine_drop
+from core.imagination.drop import imagine_drop
 from core.imagination.results import Containability, Drop
 from core.imagination.verdict import Verdict
 
@@ -70,7 +68,10 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         return Judgement(settings.omega_threshold)
     if drop.footprint is None:
         nothing = Verdict(0.0, settings.capacity_threshold, 0.0, 0.0)
-        return Judgement(settings.omega_threshold, _read_otherwise(context, model, nothing))
+        return Judgement(settings.omega_threshold, _read_roomy(context, model, nothing))
+    leaky = _leaky_body(model)
+    if leaky is not None and context.runner.workers > 1:
+        fill_beside(_filling_once(context), leaky, drop)
     capacity = imagine_capacity(context, model, drop)
     verdict = Verdict(
         hull_share(model.surface, capacity.bulk_ml),
@@ -84,7 +85,11 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         most_ml=capacity.most_ml,
         too_small_m=capacity.too_small_m,
     )
-    verdict = _read_otherwise(context, model, verdict)
+    if not verdict.is_container:
+        verdict = _read_roomy(context, model, verdict)
+    elif leaky is not None and model.unseen is not None:
+        share = capacity_share(_filling_once(context), leaky, drop)
+        verdict = replace(verdict, unseen_ml=model.unseen.unseen_ml, other_share=share)
     if verdict.is_container or verdict.is_undecided:
         capacity = with_hidden(context, model, capacity)
         verdict = replace(verdict, level_candies=capacity.level_candies, level_ml=capacity.level_ml)
@@ -92,40 +97,39 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
 
 
 def judge_ahead(context: ImaginationContext, model: CollisionModel) -> None:
-    """Let processors that the drop leaves idle begin with what the verdict may ask for.
+    """Let processors that the drop leaves idle begin with what the verdict may ask for."""
+    if context.parameters.containability.verdict != "omega" and context.runner.workers > 1:
+        find_ahead(context, model)
 
-    Most objects of which nobody saw the bottom are containers if it is closed; then the leaking reading is
-    asked about.
+
+def _leaky_body(model: CollisionModel) -> CollisionModel | None:
+    """What a container is as well, as far as anybody saw: it may have a hole in its bottom.
+
+    Most objects of which nobody saw the bottom are containers if it is closed. What rains into the hole is
+    what stayed of the drop on the closed one.
     """
-    leaky, parameters = None if model.unseen is None else model.unseen.leaky, context.parameters
-    if parameters.containability.verdict == "omega" or context.runner.workers == 1:
-        return
-    find_ahead(context, model)
-    if leaky is None:
-        return
-    with suppress(StageError):  # smaller than a candy: the verdict says so if it comes to that
-        task = drop_task(context, CollisionModel.exact(leaky))
-        context.spare.append((task, partial(context.ahead.keep, leaky, parameters)))
+    leaky = None if model.unseen is None else model.unseen.leaky
+    return None if leaky is None else CollisionModel.exact(leaky)
 
 
-def _read_otherwise(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
-    """Imagine what the unseen may be otherwise, where that could change the answer.
-
-    The verdict is that of the surface with the unseen solid: more room can only make it a container, and a
-    hole in its bottom only none.
-    """
-    unseen = model.unseen
-    other = None if unseen is None else unseen.leaky if verdict.is_container else unseen.roomy
-    if unseen is None or other is None:
+def _read_roomy(context: ImaginationContext, model: CollisionModel, verdict: Verdict) -> Verdict:
+    """Imagine the unseen as room, which can make a container of what is none."""
+    if model.unseen is None:
         return verdict
-    body = CollisionModel.exact(other)
-    drop = context.ahead.of(other, context.parameters) or imagine_drop(context, body)
-    share = capacity_share(context, body, drop)
-    return replace(verdict, unseen_ml=unseen.unseen_ml, other_share=share)
+    body = CollisionModel.exact(model.unseen.roomy)
+    share = capacity_share(_filling_once(context), body, imagine_drop(context, body))
+    return replace(verdict, unseen_ml=model.unseen.unseen_ml, other_share=share)
+
+
+def _filling_once(context: ImaginationContext) -> ImaginationContext:
+    """Of another reading it is asked on which side of the threshold it lies, not what it holds."""
+    parameters = context.parameters
+    once = parameters.capacity.model_copy(update={"n_fillings": 1})
+    return context.reading(parameters.model_copy(update={"capacity": once}))
 
 
 def capacity_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:
     """Return the `capacity_share` of the verdict that `judge` reaches."""
     if drop.footprint is None:
         return 0.0
-    return hull_share(model.surface, imagine_capacity(context, model, drop).bulk_ml)
+    return bulk_share(context, model, drop)

@@ -228,7 +228,21 @@ class CapacityParameters(Group):
     """Filling the object until candies run over."""
 
     n_fillings: int = quantity(
-        2, "Independent fillings, of which the mean is taken.", unit="", source=OURS, low=1, high=20
+        2,
+        "Independent fillings, of which the mean is taken, of what holds up to filled_once candies.",
+        unit="",
+        source=OURS,
+        low=1,
+        high=20,
+    )
+    filled_once: int = quantity(
+        500,
+        "What holds more candies by its geometry is filled once: its hollow is told, and no amount that is "
+        "poured comes near it.",
+        unit="",
+        source=f"{OURS}: docs/decisions/0051",
+        low=0,
+        high=1_000_000,
     )
     n_aimed: int = quantity(
         64,

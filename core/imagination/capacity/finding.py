@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 from core.collision import CollisionModel
@@ -42,16 +41,11 @@ def basin_of(context: ImaginationContext, surface: TriangleMesh, thickness_m: fl
     return context.run([_task(surface, question)], STAGE)[0] if made is None else made
 
 
-def find_beside(
-    context: ImaginationContext, surface: TriangleMesh, thickness_m: float, take: Callable[[Basin], None]
-) -> None:
-    """Let the same be found beside the next tasks, unless it is known; `take` receives it."""
+def find_beside(context: ImaginationContext, surface: TriangleMesh, thickness_m: float) -> None:
+    """Let the same be found beside the next tasks, unless it is known."""
     question = _question(thickness_m, context.parameters)
-    made: Basin | None = context.ahead.of(surface, question)
-    if made is None:
-        context.spare.append((_task(surface, question), take))
-    else:
-        take(made)
+    if context.ahead.of(surface, question) is None:
+        context.spare.append((_task(surface, question), partial(context.ahead.keep, surface, question)))
 
 
 def hollows_of_body(context: ImaginationContext, model: CollisionModel) -> HollowMap | None:
@@ -75,19 +69,21 @@ def hollows_of_body(context: ImaginationContext, model: CollisionModel) -> Hollo
 
 def find_ahead(context: ImaginationContext, model: CollisionModel) -> None:
     """Let idle processors find what the capacity of an object needs, whatever stays of a drop."""
-    parameters, ahead = context.parameters, context.ahead
-    diameter_m = parameters.particle.diameter_m
+    parameters, ahead, unseen = context.parameters, context.ahead, model.unseen
+    to_be_filled, wanted = [model.surface], [(model.most_detailed, HALF)]
+    if unseen is not None:
+        wanted.append((unseen.roomy, 1.0))
+        if unseen.leaky is not None:
+            to_be_filled.append(unseen.leaky)
 
-    def keep(found: list[tuple[Question, Basin]]) -> None:
+    def keep(surface: TriangleMesh, found: list[tuple[Question, Basin]]) -> None:
         for question, basin in found:
-            ahead.keep(model.surface, question, basin)
+            ahead.keep(surface, question, basin)
 
-    context.spare.append((Task(_find_for_filling, (model.surface, parameters)), keep))
-    wanted = [(model.most_detailed, HALF)]
-    if model.unseen is not None:
-        wanted.append((model.unseen.roomy, 1.0))
+    for surface in to_be_filled:
+        context.spare.append((Task(_find_for_filling, (surface, parameters)), partial(keep, surface)))
     for surface, scale in wanted:
-        question = _question(scale * diameter_m, parameters)
+        question = _question(scale * parameters.particle.diameter_m, parameters)
         context.spare.append((_task(surface, question), partial(ahead.keep, surface, question)))
 
 

@@ -9,42 +9,22 @@ import numpy as np
 
 from core.collision import CollisionModel
 from core.imagination.capacity.basin import ML, Basin
-from core.imagination.capacity.filling import Filling, FillPlan, filling_task, rain_places
-from core.imagination.capacity.finding import HALF, STAGE, basin_of, find_beside, usual_bulk_ml
-from core.imagination.capacity.openings import has_opening_below
+from core.imagination.capacity.filled import Filled, bulk_of_ml, fill
+from core.imagination.capacity.filling import Filling, FillPlan
+from core.imagination.capacity.finding import HALF, basin_of, find_beside
 from core.imagination.capacity.result import Capacity
 from core.imagination.capacity.stand_in import (
-    ball_diameter_m,
     bulk_ml,
-    smaller_candy,
-    stand_in_for,
 )
 from core.imagination.context import ImaginationContext
-from core.imagination.object_at_rest import ObjectAtRest
-from core.imagination.particle_shape import particle_extents_m
 from core.imagination.results import Drop
 from core.mesh import TriangleMesh
 from core.mesh_topology import hull_volume_m3
 from core.parameters import Parameters
-from core.workers import Task
 
 ARCH = "Candies only arch over an opening that they can pass: smaller ones fall through."
-_HEAPED = 0.5
-"""Share of what stays that lies below a rim, below which an arch is possible."""
-_SMALLER = 0.7
-"""Size of smaller candies: over an opening that a candy just passes, they hardly arch."""
-_ARCHES = 0.5
-"""A heap of smaller candies is hardly smaller."""
-_DRAINS = 0.1
-"""Water left in a hollow for candies, below which it has an opening that they do not pass, or only just."""
-_WIDE = 0.85
-"""Width of such an opening, in candies, from which on they may pass; a lattice takes it for narrower."""
-_FEW = 60
-"""Half as large candies that show whether they run out."""
 _FALL_THROUGH = 0.5
 """Share of the hollow for candies, below which the hollow for half as large ones leaks."""
-_PLUGGED = 1.1
-"""Gaps matter when the hollow is by so much larger for what is as thick as the balls."""
 
 
 def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Capacity:
@@ -57,7 +37,15 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
     """
     diameter_m = context.parameters.particle.diameter_m
     basin = basin_of(context, model.surface, diameter_m)
-    found = _filled(context, model, drop, basin)
+    half_m = HALF * diameter_m
+    if drop.retained.any():
+        find_beside(context, model.most_detailed, half_m)
+    filled = fill(context, model, drop, basin)
+    found = _told(context, model, basin, filled)
+    if filled.fillings and not filled.is_below_arch:
+        for_half = basin_of(context, model.most_detailed, half_m)
+        if for_half.candies_ml < _FALL_THROUGH * basin.candies_ml:
+            found = replace(found, too_small_m=half_m)
     if model.surface_error_m == 0 or not found.n_kept:
         return found
     least_ml, most_ml = between_ml(found.filled_ml, basin, model.surface_error_m)
@@ -99,98 +87,16 @@ def between_ml(volume_ml: float, basin: Basin, error_m: float) -> tuple[float, f
     return float(max(volume_ml - _INWARDS * shift_ml, 0.0)), float(volume_ml + shift_ml)
 
 
-def _filled(context: ImaginationContext, model: CollisionModel, drop: Drop, basin: Basin) -> Capacity:
-    parameters, surface, target = context.parameters, model.surface, context.target(model)
-    plan = _plan(basin, drop, parameters)
-    if not drop.retained.any():
-        return _result(plan, basin, (), surface, parameters)
-    if plan.stand_in.scale > 1:
-        plan = _without_plugs(plan, basin, basin_of(context, surface, plan.stand_in.particle.diameter_m))
-    for_half: list[Basin] = []
-    find_beside(context, model.most_detailed, HALF * parameters.particle.diameter_m, for_half.append)
-    fillings = _fill(context, target, plan)
-    below = _below_an_arch(context, model, drop, plan, fillings)
-    if below is not None:
-        return replace(_result(below[0], basin, below[1], surface, parameters), explanation=ARCH)
-    found = _result(plan, basin, fillings, surface, parameters)
-    if for_half[0].candies_ml >= _FALL_THROUGH * basin.candies_ml:
-        return found
-    return replace(found, too_small_m=HALF * parameters.particle.diameter_m)
+def bulk_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:
+    """Return what stays in an object as a share of its convex hull's volume, and nothing else of it."""
+    basin = basin_of(context, model.surface, context.parameters.particle.diameter_m)
+    found = _told(context, model, basin, fill(context, model, drop, basin))
+    return hull_share(model.surface, found.bulk_ml)
 
 
-def _fill(context: ImaginationContext, target: ObjectAtRest, plan: FillPlan) -> tuple[Filling, ...]:
-    parameters = context.parameters
-    tasks = [filling_task(target, plan, k, parameters) for k in range(parameters.capacity.n_fillings)]
-    return tuple(context.run(tasks, STAGE))
-
-
-def _below_an_arch(
-    context: ImaginationContext,
-    model: CollisionModel,
-    drop: Drop,
-    plan: FillPlan,
-    fillings: tuple[Filling, ...],
-) -> tuple[FillPlan, tuple[Filling, ...]] | None:
-    """Return what is left of smaller candies, where those that stay only arch over an opening; else none."""
-    parameters, target, basin = context.parameters, context.target(model), plan.basin
-
-    def has_opening(width_m: float) -> bool:
-        return bool(context.run([_opening_task(model.surface, drop, basin, width_m)], STAGE)[0])
-
-    thinnest_m = float(particle_extents_m(parameters.particle).min())
-    if _is_mostly_heaped(fillings) and has_opening(_SMALLER * thinnest_m):
-        smaller = _of_smaller_candies(plan, parameters)
-        also = _fill(context, target, smaller)
-        if _bulk_ml(smaller, also, basin) < _ARCHES * _bulk_ml(plan, fillings, basin):
-            return smaller, also
-    drains = basin.water_ml < _DRAINS * basin.candies_ml
-    if drains and has_opening(_WIDE * ball_diameter_m(parameters.particle)):
-        few = replace(plan, stand_in=smaller_candy(parameters, HALF), n_expected=_FEW, runs_over=False)
-        also = _fill(context, target, few)
-        if sum(one.n_kept for one in also) < _ARCHES * sum(one.n_poured for one in also):
-            return few, also
-    return None
-
-
-def _is_mostly_heaped(fillings: tuple[Filling, ...]) -> bool:
-    """Whether most of what stays lies above any rim: a heap on a floor, or an arch over an opening."""
-    return sum(one.n_level for one in fillings) < _HEAPED * sum(one.n_kept for one in fillings)
-
-
-def _opening_task(surface: TriangleMesh, drop: Drop, basin: Basin, width_m: float) -> Task:
-    """Whether something of a width could fall through below the candies that stayed."""
-    places_m = drop.drop_positions_m[drop.retained, :2]
-    return Task(has_opening_below, (surface, places_m, basin.hollow_map, width_m), 1.0)
-
-
-def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:
-    """Smaller ones form a heap as well, but no arch over an opening that candies pass one by one."""
-    stand_in = smaller_candy(parameters, _SMALLER)
-    n_expected = plan.n_expected * (plan.stand_in.scale / _SMALLER) ** 3
-    return replace(plan, stand_in=stand_in, n_expected=n_expected)
-
-
-def _bulk_ml(plan: FillPlan, fillings: tuple[Filling, ...], basin: Basin) -> float:
-    return fmean(one.n_kept for one in fillings) * bulk_ml(plan.stand_in.particle, basin.around)
-
-
-def _plan(basin: Basin, found: Drop, parameters: Parameters) -> FillPlan:
-    # What the drop left inside fits, whatever the geometry says of gaps.
-    n_candies = max(basin.candies_ml / usual_bulk_ml(parameters), float(found.n_in))
-    stand_in = stand_in_for(n_candies, basin.mouth_m, parameters)
-    extents_m = found.aabb_m[1, :2] - found.aabb_m[0, :2]
-    apart_m = float(np.sqrt(np.prod(extents_m) / found.n_drop))
-    footprint_m = found.drop_positions_m[found.retained, :2]
-    radius_m = stand_in.particle.diameter_m / 2
-    places_m = rain_places(basin, footprint_m, radius_m, apart_m) if len(footprint_m) else footprint_m
-    return FillPlan(stand_in, places_m, n_candies / stand_in.scale**3, basin)
-
-
-def _without_plugs(plan: FillPlan, basin: Basin, for_balls: Basin) -> FillPlan:
-    """Count only what lies below the candies' rim, if balls close gaps that candies pass."""
-    if for_balls.candies_ml <= _PLUGGED * basin.candies_ml or basin.candies_ml == 0:
-        return plan
-    return replace(plan, only_level=True)
+def _told(context: ImaginationContext, model: CollisionModel, basin: Basin, filled: Filled) -> Capacity:
+    found = _result(filled.plan, basin, filled.fillings, model.surface, context.parameters)
+    return replace(found, explanation=ARCH) if filled.is_below_arch else found
 
 
 def _result(
@@ -206,7 +112,7 @@ def _result(
     volume = fmean([filling.n_level for filling in fillings] or [0.0]) * per_particle
     # Candies that lie against the rim reach above it: no more than the hollow is level.
     volume = min(volume, basin.candies_ml)
-    bulk = _bulk_ml(plan, fillings, basin) if fillings else 0.0
+    bulk = bulk_of_ml(plan, fillings, basin) if fillings else 0.0
     is_container = hull_share(surface, bulk) > parameters.containability.capacity_threshold
     is_hollow_told = plan.stand_in.scale > 1 and is_container
     told = basin.candies_ml if is_hollow_told else volume

@@ -12,6 +12,7 @@ from core.collision import CollisionModel
 from core.files import read_json, write_json
 from core.geometry import BoolArray
 from core.imagination.choice import choose_pour, papers_order, surest_first
+from core.imagination.clearance import clearances_m, clearest_first
 from core.imagination.context import ImaginationContext
 from core.imagination.cup_runs import CupRuns
 from core.imagination.object_at_rest import ObjectAtRest
@@ -97,11 +98,20 @@ def imagine_risk(
     settings = parameters.risk
     if settings.n_tries == 0:
         return None
-    order = papers_order(grid, feasible)
+    order = _clearest_first(papers_order(grid, feasible), context, target, grid)
     risk = run_race(context, target, grid, runs, Race(known or PourRisk.as_planned(grid), order, settings))
     if not order or max(risk.clean_at_least[pour] for pour in order) >= settings.wanted_clean:
         return risk
     return replace(risk, fewer=_try_fewer(context, target, grid, runs, surest_first(risk, order)))
+
+
+def _clearest_first(
+    order: Sequence[tuple[int, int]], context: ImaginationContext, target: ObjectAtRest, grid: PourGrid
+) -> list[tuple[int, int]]:
+    """Return the pours in the order in which equals are tried; the paper's where no hollow is known."""
+    if target.hollows is None:
+        return list(order)
+    return clearest_first(order, clearances_m(grid, target.hollows, context.parameters.particle.diameter_m))
 
 
 def _try_fewer(
