@@ -240,7 +240,7 @@ class CapacityParameters(Group):
         "What holds more candies by its geometry is filled once: its hollow is told, and no amount that is "
         "poured comes near it.",
         unit="",
-        source=f"{OURS}: docs/decisions/0051",
+        source=f"{OURS}: docs/decisions/0052",
         low=0,
         high=1_000_000,
     )

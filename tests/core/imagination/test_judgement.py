@@ -140,20 +140,19 @@ class Counting:
 
 
 @pytest.mark.system
-def test_what_may_leak_is_dropped_on_beside_the_drop_itself_with_the_same_answer(dish, pipe, few, pool):
+def test_what_may_leak_is_filled_beside_the_object_with_the_same_answer(dish, pipe, few, pool):
     hidden = CollisionModel.exact(dish.surface, UnseenReadings(40.0, dish.surface, pipe))
 
-    def judged(is_ahead: bool):
-        context = ImaginationContext(few, counting := Counting(pool), Reporter())
-        if is_ahead:
-            judge_ahead(context, hidden)
-        verdict = judge(context, hidden, imagine_drop(context, hidden)).verdict
-        return verdict, [n for stage, n in counting.ran if stage == "containability"]
+    def judged(runner):
+        context = ImaginationContext(few, runner, Reporter())
+        judge_ahead(context, hidden)
+        return judge(context, hidden, imagine_drop(context, hidden)).verdict
 
-    ahead, later = judged(True), judged(False)
-    assert ahead[0] == later[0] and ahead[0].is_undecided
-    # The drop, what may leak, the two hollows that any verdict asks for, and that of what was not seen.
-    assert (ahead[1], later[1]) == ([5], [1, 1])
+    beside, in_turn = judged(counting := Counting(pool)), judged(RunHere())
+    assert beside == in_turn and beside.is_undecided
+    first = dict(reversed(counting.ran))
+    # The drop, hollows of both, and those of half candies and of what was not seen; then fillings of both.
+    assert first == {"containability": 5, "capacity": few.capacity.n_fillings + 1}
 
 
 @pytest.mark.system

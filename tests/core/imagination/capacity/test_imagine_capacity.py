@@ -45,6 +45,12 @@ def test_a_dish_holds_its_inside(filled):
     assert filled.n_level == pytest.approx(filled.n_candies - filled.heaped_ml * filled.candies_per_ml)
 
 
+@pytest.mark.parametrize(("filled_once", "n_fillings"), [(50, 1), (500, 2)])
+def test_what_no_amount_comes_near_is_filled_once(exact_dish, candies, few, filled_once, n_fillings):
+    settings = few.model_copy(update={"filled_once": filled_once, "n_fillings": 2})
+    assert len(fill(exact_dish, candies, settings, RunHere()).n_kept) == n_fillings
+
+
 @pytest.mark.system
 def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, filled, candies, few):
     assert filled.least_ml is None and filled.between == ""
