@@ -13,6 +13,8 @@ from core.imagination.results import PourGrid
 
 _OF_CANDIES = 0.1
 """So many may enter nearer to the edge: a single one that strayed says little."""
+_AS_CLEAR = 0.95
+"""Times the largest clearance, above which others are as clear: over a wide opening most are."""
 
 
 def clearances_m(grid: PourGrid, hollows: HollowMap, diameter_m: float) -> FloatArray:
@@ -57,5 +59,10 @@ def entry_clearance_m(recording: Recording, hollows: HollowMap, below_m: float) 
 
 
 def clearest_first(order: Sequence[tuple[int, int]], clearance_m: FloatArray) -> list[tuple[int, int]]:
-    """Return pours (i, j) with the largest clearance (I, 3) first; equals keep their order."""
-    return sorted(order, key=lambda pour: -clearance_m[pour])
+    """Return pours (i, j) with the largest clearance (I, 3) first; such as are as clear keep their order."""
+    left, ranked = list(order), list[tuple[int, int]]()
+    while left:
+        enough_m = _AS_CLEAR * max(clearance_m[pour] for pour in left)
+        ranked += [pour for pour in left if clearance_m[pour] >= enough_m]
+        left = [pour for pour in left if clearance_m[pour] < enough_m]
+    return ranked

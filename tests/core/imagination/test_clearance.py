@@ -79,10 +79,11 @@ def test_a_recording_that_was_kept_has_the_same(box):
     assert entry_clearance_m(kept, box, IN_M) == entry_clearance_m(fresh, box, IN_M)
 
 
-def test_equals_keep_their_order():
-    clearance_m = np.array([[0.01, 0.02, 0.01], [0.02, 0.03, 0.0]])
+def test_such_as_are_as_clear_keep_their_order():
+    clearance_m = np.array([[0.01, 0.0297, 0.01], [0.02, 0.03, 0.0]])
     order = [(1, 2), (0, 0), (0, 1), (1, 0), (0, 2), (1, 1)]
-    assert clearest_first(order, clearance_m) == [(1, 1), (0, 1), (1, 0), (0, 0), (0, 2), (1, 2)]
+    assert clearest_first(order, clearance_m) == [(0, 1), (1, 1), (1, 0), (0, 0), (0, 2), (1, 2)]
+    assert clearest_first(order, np.zeros((2, 3))) == order, "none enters a hollow"
 
 
 @pytest.fixture(scope="module")
@@ -101,4 +102,4 @@ def test_the_clearest_of_equal_pours_is_tried_first(beaker):
     assert is_clean.sum() > 1, "there is a choice"
     tried = np.argwhere(found.risk.n_tries > 1)
     assert len(tried) == 1
-    assert clearance_m[tuple(tried[0])] == clearance_m[is_clean].max() > 0
+    assert clearance_m[tuple(tried[0])] >= 0.95 * clearance_m[is_clean].max() > 0
