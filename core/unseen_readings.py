@@ -27,11 +27,6 @@ class UnseenReadings:
     roomy: TriangleMesh
     leaky: TriangleMesh | None = None
 
-    @property
-    def surfaces(self) -> tuple[TriangleMesh, ...]:
-        """The hollow one, and the leaking one if there is one."""
-        return (self.roomy,) if self.leaky is None else (self.roomy, self.leaky)
-
     def save(self, folder: Path) -> None:
         """Write the surfaces and `unseen.json` into an existing folder."""
         write_json(folder / FACTS_FILE, {"unseen_ml": self.unseen_ml})

@@ -2,6 +2,13 @@
 
 from core.collision.build import build_collision_model, from_parts, read_collision_model
 from core.collision.model import CollisionModel
-from core.collision.simplification import simplify
+from core.collision.simplification import simplify, simplify_finely
 
-__all__ = ["CollisionModel", "build_collision_model", "from_parts", "read_collision_model", "simplify"]
+__all__ = [
+    "CollisionModel",
+    "build_collision_model",
+    "from_parts",
+    "read_collision_model",
+    "simplify",
+    "simplify_finely",
+]

@@ -29,7 +29,8 @@ class CollisionModel:
             `given`: convex parts.
         parts: meshes in metres, in the frame of the surface.
         surface: the true surface, simplified; its AABB decides which particle is inside (Sec. III-A).
-        unseen: other surfaces that the scan allows, simplified as well; none where it saw everything.
+        unseen: other surfaces that the scan allows, simplified as well, the hollow one finely; none where it
+            saw everything.
         surface_error_m: how far the surface of a scan may lie from the true one; zero if it was given.
         detailed: the surface as it was before it was simplified, for what holes decide; not saved. None where
             it is not at hand.

@@ -32,7 +32,7 @@ def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
     their pinholes grow, before the average tells. A rough surface never gets there, and needs not.
     The two sides of a thin wall may meet in an edge of four faces.
     """
-    fine = _finely_decimated(mesh, _FINE * max_faces)
+    fine = simplify_finely(mesh, max_faces)
 
     def serves(coarse: TriangleMesh, n_faces: int) -> bool:
         deviation = _deviation(mesh, coarse)
@@ -41,14 +41,17 @@ def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
     return _decimated(fine, max_faces, serves)
 
 
-def _finely_decimated(mesh: TriangleMesh, n_faces: int) -> TriangleMesh:
-    """Reduce a mesh as far as its shape is hardly touched (0.02 mm), ten times as fast as Open3D does.
+def simplify_finely(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
+    """Reduce a mesh to ten times `max_faces`, where its shape is hardly touched (0.02 mm): the first step.
+
+    Ten times as fast as Open3D, and enough where not much physics follows.
 
     Not further: with fewer faces pinholes in thin walls grow more than with Open3D's (decision 0050). Where
     the quick way loses the shape, as of faces that share no vertices, Open3D goes all of it.
     """
     from fast_simplification import simplify as decimate
 
+    n_faces = _FINE * max_faces
     if len(mesh.faces) <= n_faces:
         return mesh
     vertices, faces = decimate(

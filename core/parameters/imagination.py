@@ -20,7 +20,12 @@ class ContainabilityParameters(Group):
     """Dropping candies and shaking the object (Sec. III-A)."""
 
     n_max: int = quantity(
-        289, "N_max: more candies than this are thinned out.", unit="", source=CODE, low=1, high=5000
+        144,
+        "N_max: more candies than this are thinned out.",
+        unit="",
+        source=f"{OURS}: docs/decisions/0052; {CODE}: 289",
+        low=1,
+        high=5000,
     )
     n_min: int = quantity(64, "N_min: fewer get further layers.", unit="", source=CODE, low=1, high=5000)
     layers: Literal["as_needed", "one_more"] = choice(

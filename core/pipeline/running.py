@@ -13,7 +13,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from core.collision import CollisionModel, simplify
+from core.collision import CollisionModel, simplify, simplify_finely
 from core.imagination.amount.reasoning import plan_amount
 from core.imagination.amount.result import PlannedAmount
 from core.imagination.choice import choose_pour
@@ -209,14 +209,17 @@ def _color_tasks(given: Given) -> list[Task]:
 
 
 def _collision_tasks(given: Given) -> list[Task]:
-    """Make the body; what a scan allows as well is simplified in the same way."""
+    """Make the body, and simplify what a scan allows as well: the hollow one finely, to find its volume."""
     surface, settings = given.surface, given.parameters.collision
     if _given_parts(given) is not None:
         return []
     unseen = surface.unseen if isinstance(surface, Reconstruction) else None
-    others = () if unseen is None else unseen.surfaces
-    simplified = (Task(simplify, (other, settings.max_faces)) for other in others)
-    return [Task(collision_job, (surface.mesh, settings)), *simplified]
+    tasks = [Task(collision_job, (surface.mesh, settings))]
+    if unseen is not None and unseen.leaky is not None:
+        tasks.append(Task(simplify, (unseen.leaky, settings.max_faces)))
+    if unseen is not None:
+        tasks.append(Task(simplify_finely, (unseen.roomy, settings.max_faces)))
+    return tasks
 
 
 def _given_parts(given: Given) -> CollisionModel | None:
@@ -234,7 +237,8 @@ def _collision_model(given: Given, done: Sequence[Any]) -> CollisionModel:
     if not isinstance(surface, Reconstruction):
         return model
     if surface.unseen is not None:
-        model = replace(model, unseen=UnseenReadings(surface.unseen.unseen_ml, *done[1:]))
+        *leaky, roomy = done[1:]
+        model = replace(model, unseen=UnseenReadings(surface.unseen.unseen_ml, roomy, *leaky))
     return replace(model, surface_error_m=surface.surface_error_m)
 
 

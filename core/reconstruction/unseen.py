@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import binary_dilation, distance_transform_edt, generate_binary_structure, label
 
-from core.geometry import BoolArray
+from core.geometry import BoolArray, FloatArray
 from core.reconstruction.tsdf import TsdfVolume
+from core.threads import in_threads
 from core.voxel_groups import large_groups
 
 FREE_SHARE = 0.5
@@ -113,31 +114,36 @@ def find_unseen_inside(volume: TsdfVolume, platform_height_m: float) -> UnseenIn
     frontier = large_groups(frontier, SMALLEST_PATCH_M2 / volume.voxel_m**2, ALL_NEIGHBOURS)
     region = _connected_to(frontier, enclosed & ~seen)
     looked_through = enclosed & seen
-    assumed = _only_behind_outer_sides(solid, region, looked_through, outside & seen, volume)
-    within_layer = (volume.voxel_m, volume.voxel_m, _FAR_M)
-    away_m = distance_transform_edt(~outside, sampling=within_layer)
-    # Of a voxel as far away as this, half lies nearer.
-    behind_walls = (region | assumed) & (away_m > THINNEST_WALL_M + volume.voxel_m / 2)
+    if not region.any():
+        nothing = np.zeros_like(region)
+        return UnseenInside(
+            outside, enclosed, looked_through, frontier, region, nothing, nothing, first_layer
+        )
+    any_way, within_layer = (1.0, 1.0, 1.0), (1.0, 1.0, _FAR_M / volume.voxel_m)
+    asked = ((looked_through, any_way), (outside & seen, any_way), (outside, within_layer))
+    inside_m, around_m, away_m = in_threads(lambda one: volume.voxel_m * _distance(*one), asked)
+    # Joined to the region, and seen neither from the free space inside nor from around. A lid that was seen
+    # from above was, as thin as it may be. Of a voxel as far away as the thinnest wall, half lies nearer.
+    through_m = THINNEST_WALL_M + volume.voxel_m / 2
+    unsure = solid & (inside_m > volume.behind_m) & (around_m > through_m)
+    assumed = _connected_to(region, region | unsure) & unsure
+    behind_walls = (region | assumed) & (away_m > through_m)
     return UnseenInside(
         outside, enclosed, looked_through, frontier, region, assumed, behind_walls, first_layer
     )
 
 
-def _only_behind_outer_sides(
-    solid: BoolArray, region: BoolArray, inside: BoolArray, around: BoolArray, volume: TsdfVolume
-) -> BoolArray:
-    """Solid voxels joined to the region that no view from the free space inside saw, nor one from around.
+def _distance(free: BoolArray, lengths: tuple[float, float, float]) -> FloatArray:
+    """Distance of each voxel from the free ones, infinite if there are none.
 
-    A lid that was seen from above is one, as thin as it may be.
+    Args:
+        free: (X, Y, Z).
+        lengths: of a voxel's edges.
     """
-    if not region.any():
-        return np.zeros_like(region)
-    from_inside_m, from_around_m = (
-        distance_transform_edt(~free) * volume.voxel_m if free.any() else np.inf for free in (inside, around)
-    )
-    is_below_lid = from_around_m > THINNEST_WALL_M + volume.voxel_m / 2
-    unsure = solid & (from_inside_m > volume.behind_m) & is_below_lid
-    return _connected_to(region, region | unsure) & unsure
+    if not free.any():
+        return np.full(free.shape, np.inf)
+    distance: FloatArray = distance_transform_edt(~free, sampling=lengths)
+    return distance
 
 
 def _outside_in_layer(solid: BoolArray) -> BoolArray:

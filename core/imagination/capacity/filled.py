@@ -17,7 +17,6 @@ from core.imagination.capacity.stand_in import ball_diameter_m, bulk_ml, smaller
 from core.imagination.context import ImaginationContext
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.results import Drop
-from core.mesh import TriangleMesh
 from core.parameters import Parameters
 from core.workers import Task
 
@@ -68,8 +67,11 @@ def fill_beside(context: ImaginationContext, model: CollisionModel, drop: Drop) 
         return
     parameters = context.parameters
     plan = _plan_for(context, model, drop, basin_of(context, model.surface, parameters.particle.diameter_m))
-    for k, task in enumerate(_filling_tasks(context, model, plan)):
-        context.spare.append((task, partial(context.ahead.keep, model.surface, _asked(plan, k, parameters))))
+    may_run_out = _may_run_out(context, model, drop, plan.basin)
+    for one in [plan, _of_few_small_candies(plan, parameters)] if may_run_out else [plan]:
+        for k, task in enumerate(_filling_tasks(context, model, one)):
+            asked = _asked(one, k, parameters)
+            context.spare.append((task, partial(context.ahead.keep, model.surface, asked)))
 
 
 def bulk_of_ml(plan: FillPlan, fillings: tuple[Filling, ...], basin: Basin) -> float:
@@ -108,19 +110,14 @@ def _below_an_arch(
 ) -> Filled | None:
     """Return what is left of smaller candies, where those that stay only arch over an opening; else none."""
     parameters, basin = context.parameters, plan.basin
-
-    def has_opening(width_m: float) -> bool:
-        return bool(context.run([_opening_task(model.surface, drop, basin, width_m)], STAGE)[0])
-
-    thinnest_m = float(particle_extents_m(parameters.particle).min())
-    if _is_mostly_heaped(fillings) and has_opening(_SMALLER * thinnest_m):
+    smaller_m = _SMALLER * float(particle_extents_m(parameters.particle).min())
+    if _is_mostly_heaped(fillings) and _has_opening(context, model, drop, basin, smaller_m):
         smaller = _of_smaller_candies(plan, parameters)
         also = _fill(context, model, smaller)
         if bulk_of_ml(smaller, also, basin) < _ARCHES * bulk_of_ml(plan, fillings, basin):
             return Filled(smaller, also, is_below_arch=True)
-    drains = basin.water_ml < _DRAINS * basin.candies_ml
-    if drains and has_opening(_WIDE * ball_diameter_m(parameters.particle)):
-        few = replace(plan, stand_in=smaller_candy(parameters, HALF), n_expected=_FEW, runs_over=False)
+    if _may_run_out(context, model, drop, basin):
+        few = _of_few_small_candies(plan, parameters)
         also = _fill(context, model, few)
         if sum(one.n_kept for one in also) < _ARCHES * sum(one.n_poured for one in also):
             return Filled(few, also, is_below_arch=True)
@@ -132,10 +129,20 @@ def _is_mostly_heaped(fillings: tuple[Filling, ...]) -> bool:
     return sum(one.n_level for one in fillings) < _HEAPED * sum(one.n_kept for one in fillings)
 
 
-def _opening_task(surface: TriangleMesh, drop: Drop, basin: Basin, width_m: float) -> Task:
+def _may_run_out(context: ImaginationContext, model: CollisionModel, drop: Drop, basin: Basin) -> bool:
+    """Whether candies that stay may close an opening that smaller ones pass."""
+    wide_m = _WIDE * ball_diameter_m(context.parameters.particle)
+    drains = basin.water_ml < _DRAINS * basin.candies_ml
+    return drains and _has_opening(context, model, drop, basin, wide_m)
+
+
+def _has_opening(
+    context: ImaginationContext, model: CollisionModel, drop: Drop, basin: Basin, width_m: float
+) -> bool:
     """Whether something of a width could fall through below the candies that stayed."""
     places_m = drop.drop_positions_m[drop.retained, :2]
-    return Task(has_opening_below, (surface, places_m, basin.hollow_map, width_m), 1.0)
+    task = Task(has_opening_below, (model.surface, places_m, basin.hollow_map, width_m))
+    return bool(context.run([task], STAGE)[0])
 
 
 def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:
@@ -143,6 +150,11 @@ def _of_smaller_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:
     stand_in = smaller_candy(parameters, _SMALLER)
     n_expected = plan.n_expected * (plan.stand_in.scale / _SMALLER) ** 3
     return replace(plan, stand_in=stand_in, n_expected=n_expected)
+
+
+def _of_few_small_candies(plan: FillPlan, parameters: Parameters) -> FillPlan:
+    """So many show whether they run out."""
+    return replace(plan, stand_in=smaller_candy(parameters, HALF), n_expected=_FEW, runs_over=False)
 
 
 def _plan_for(context: ImaginationContext, model: CollisionModel, drop: Drop, basin: Basin) -> FillPlan:
