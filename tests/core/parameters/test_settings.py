@@ -31,6 +31,7 @@ def test_paper_and_authors_hold_the_figures_of_text_and_code():
     assert math.isclose(authors.pouring.indent_step_ratio, 1 / 9)
     assert (paper.pouring.counted, authors.pouring.counted) == ("inside", "above_floor")
     assert (paper.particle.shape, authors.particle.shape) == ("ellipsoid", "cylinder")
+    assert paper.containability.n_max == authors.containability.n_max == 17**2
 
 
 def test_the_schedule_lasts_the_papers_1500_steps():
