@@ -85,12 +85,13 @@ class PourMap(QWidget):
     def set_pours(self, cells: Sequence[MappedPour], chosen: tuple[int, int] | None) -> None:
         """Show the pours of one grid and which was chosen; none: an empty map that says so.
 
-        The comparison is dropped when the grid's shape changes; the selection stays where it can, else it
-        goes to the chosen pour.
+        The comparison is dropped when the grid's shape changes. The selection goes to the chosen pour, unless
+        somebody has selected another that is still there.
         """
+        was_moved = self._selection != self._chosen
         self._cells = {(cell.i, cell.j): cell for cell in cells}
         self._chosen = chosen if chosen in self._cells else None
-        if self._selection not in self._cells:
+        if not was_moved or self._selection not in self._cells:
             self._selection = self._chosen
         if self._other is not None and self._other.shape != self.shape:
             self._other = None

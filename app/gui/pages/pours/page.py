@@ -138,14 +138,16 @@ class PoursPage(BackgroundPage[PoursKey, ShownPours]):
             self._before = former.grid
         grid = None if pours is None else pours.grid
         self._left.setVisible(grid is not None)
+        selection = self._map.selection
         self._map.set_pours([] if pours is None else cells_of(pours), None if pours is None else pours.chosen)
         self._offer_measures()
         if pours is None:
             self._scene.show_nothing(self.tr("The object and its pours appear here."))
         elif not is_same:
             self._scene.show_pours(pours)
-            if grid is not None and self._map.selection is not None:
-                self._scene.show_pour(*self._map.selection)
+        is_other = not is_same or self._map.selection != selection
+        if is_other and grid is not None and self._map.selection is not None:
+            self._scene.show_pour(*self._map.selection)
         self._compare.show_grid(grid, self._before)
         self._choice.show_pours(pours, self.failure or self._empty_text())
         self.update_actions()

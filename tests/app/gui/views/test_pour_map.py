@@ -100,6 +100,14 @@ def test_a_comparison_of_another_shape_is_refused_and_one_outlived_is_dropped(po
     assert "before" not in pour_map.describe(0, 0)
 
 
+@pytest.mark.parametrize(("moved_to", "then"), [(None, (0, 1)), ((0, 2), (0, 2)), ((5, 0), (0, 1))])
+def test_the_selection_follows_the_chosen_pour_unless_somebody_moved_it(pour_map, moved_to, then):
+    if moved_to is not None:
+        pour_map.select(*moved_to)
+    pour_map.set_pours(cells(1), chosen=(0, 1))
+    assert pour_map.selection == then
+
+
 def test_a_single_direction_lies_where_it_points(qtbot, pour_map):
     pour_map.set_pours([MappedPour(0, j, pi / 2, 0.01 * j, 0.5) for j in range(3)], chosen=None)
     assert pour_map.selection is None
