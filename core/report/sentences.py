@@ -192,9 +192,7 @@ def risk_sentence(grid: PourGrid, risk: PourRisk, choice: PourChoice, paper: Pou
     if (choice.i, choice.j) == (paper.i, paper.j):
         return f"{said} The largest P alone (the paper's choice) is there, too."
     n, clean = risk.n_tries[paper.i, paper.j], risk.n_clean[paper.i, paper.j]
-    tried = (
-        f"of whose {n} {'try' if n == 1 else 'tries'} {clean} spilled nothing" if n else "which was not tried"
-    )
+    tried = f"clean in {clean} of {n} trial{'s' if n > 1 else ''}" if n else "which was not tried"
     return (
         f"{said} By P alone (the paper's choice) it would be from {place_text(grid, paper.i, paper.j)}, "
         f"{tried}."

@@ -86,7 +86,7 @@ def test_tries_say_how_sure_a_pour_is(pours: PourGrid, choice: PourChoice) -> No
     assert "(1 of 3 trials clean); 2.0 of 60 candies spilled on average." in tries_sentence(risk, 7, 2)
     assert tries_sentence(risk, 0, 0 if (choice.i, choice.j) != (0, 0) else 1).startswith("Tried once")
     other = replace(choice, i=7, j=2)
-    assert "of whose 3 tries 1 spilled nothing" in risk_sentence(pours, risk, choice, other)
+    assert "at 52 mm, clean in 1 of 3 trials." in risk_sentence(pours, risk, choice, other)
 
 
 def test_close_verdict_shows_the_difference(tray: Containability) -> None:
