@@ -44,10 +44,9 @@ def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
 def simplify_finely(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
     """Reduce a mesh to ten times `max_faces`, where its shape is hardly touched (0.02 mm): the first step.
 
-    Ten times as fast as Open3D, and enough where not much physics follows.
-
-    Not further: with fewer faces pinholes in thin walls grow more than with Open3D's (decision 0050). Where
-    the quick way loses the shape, as of faces that share no vertices, Open3D goes all of it.
+    Ten times as fast as Open3D, and enough where not much physics follows. Not further: with fewer faces
+    pinholes in thin walls grow more than with Open3D's (decision 0050). Where the quick way loses the shape,
+    as of faces that share no vertices, Open3D goes all of it.
     """
     from fast_simplification import simplify as decimate
 

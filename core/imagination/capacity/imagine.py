@@ -41,7 +41,7 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
     if drop.retained.any():
         find_beside(context, model.most_detailed, half_m)
     filled = fill(context, model, drop, basin)
-    found = _told(context, model, basin, filled)
+    found = _told(context, model, filled)
     if filled.fillings and not filled.is_below_arch:
         for_half = basin_of(context, model.most_detailed, half_m)
         if for_half.candies_ml < _FALL_THROUGH * basin.candies_ml:
@@ -90,12 +90,13 @@ def between_ml(volume_ml: float, basin: Basin, error_m: float) -> tuple[float, f
 def bulk_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:
     """Return what stays in an object as a share of its convex hull's volume, and nothing else of it."""
     basin = basin_of(context, model.surface, context.parameters.particle.diameter_m)
-    found = _told(context, model, basin, fill(context, model, drop, basin))
+    found = _told(context, model, fill(context, model, drop, basin))
     return hull_share(model.surface, found.bulk_ml)
 
 
-def _told(context: ImaginationContext, model: CollisionModel, basin: Basin, filled: Filled) -> Capacity:
-    found = _result(filled.plan, basin, filled.fillings, model.surface, context.parameters)
+def _told(context: ImaginationContext, model: CollisionModel, filled: Filled) -> Capacity:
+    plan = filled.plan
+    found = _result(plan, plan.basin, filled.fillings, model.surface, context.parameters)
     return replace(found, explanation=ARCH) if filled.is_below_arch else found
 
 

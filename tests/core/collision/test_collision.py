@@ -89,22 +89,24 @@ def test_faces_that_share_no_vertices_keep_the_shape() -> None:
 def test_a_mesh_that_would_be_ruined_keeps_more_faces(shared_data: Path) -> None:
     path = shared_data / "objects/meshes/cdb_teapot.obj"
     teapot = read_mesh(path, Reporter())
-    coarse = simplify(teapot, 2000)
-    assert 2000 < len(coarse.faces) < len(teapot.faces)
-    np.testing.assert_allclose(coarse.extents_m, teapot.extents_m, atol=0.002)
+    for wanted in (200, 2000):
+        coarse = simplify(teapot, wanted)
+        assert wanted < len(coarse.faces) < len(teapot.faces)
+        np.testing.assert_allclose(coarse.extents_m, teapot.extents_m, atol=0.002)
 
 
-def test_thin_walls_stay_where_the_average_would_let_them_go() -> None:
+@pytest.mark.parametrize("wanted", [1300, 2600])
+def test_thin_walls_stay_where_the_average_would_let_them_go(wanted: int) -> None:
     """With 2600 faces it is 0.49 mm off on average, and 7 mm where one vertex in a hundred is."""
     box = open_box((0.2, 0.15, 0.15), 0.002)
     fine = trimesh.Trimesh(*trimesh.remesh.subdivide_to_size(box.vertices_m, box.faces, 0.005))
     fine.merge_vertices()
     noise_m = np.random.default_rng(0).normal(0, 0.0003, fine.vertices.shape)
     rough = TriangleMesh(np.array(fine.vertices) + noise_m, np.array(fine.faces, dtype=np.int64))
-    coarse = simplify(rough, 2600)
+    coarse = simplify(rough, wanted)
     distances_m = SurfaceDistance(coarse).of_m(rough.vertices_m)
-    assert np.percentile(distances_m, 99) < 0.0013
-    assert len(coarse.faces) <= 4 * 2600
+    assert np.percentile(distances_m, 99) < 0.0012
+    assert len(coarse.faces) <= 4 * wanted
     assert topology(coarse).n_open == 0
 
 

@@ -14,7 +14,7 @@ from core.progress import Reporter
 from tests.core.imagination.capacity.conftest import turned
 from tests.core.imagination.here import here
 
-RIM_M, WIDTH_M, PITCH_M, IN_M = 0.1, 0.06, 0.001, 0.0066
+RIM_M, PITCH_M, IN_M = 0.1, 0.001, 0.0066
 
 
 @pytest.fixture
@@ -28,10 +28,10 @@ def box() -> HollowMap:
     )
 
 
-def falling(starts_m, ends_m, n_more: int = 1) -> Recording:
+def falling(starts_m, ends_m) -> Recording:
     """A recording of candies that go straight from one place to another, and stay there."""
     starts, ends = np.array(starts_m, dtype=np.float32), np.array(ends_m, dtype=np.float32)
-    positions = np.stack([starts, *[ends] * (n_more + 1)])
+    positions = np.stack([starts, ends, ends])
     n_times, n_candies = positions.shape[:2]
     return Recording(
         np.arange(n_times, dtype=np.float32) / 24,
