@@ -50,6 +50,7 @@ from hardware.robots.ur.messages import (
     tool_outputs,
 )
 from hardware.robots.ur.motions import RESTING_RAD_S, Following, JointMoves, Motion, UsualLag, joints_at_rest
+from hardware.robots.ur.polling import PollingThreads
 from hardware.robots.ur.reading import RECEIVED, read_state
 
 _HANGS_S = 12
@@ -59,7 +60,11 @@ WATCHDOG_HZ = 3.5
 _KICK_S = 0.04
 _IDLE_S = 0.01
 _STANDING_S = 0.02
-"""How often the thread that makes the control calls looks around while the arm stands."""
+"""How often both threads look around while the arm stands."""
+_CALM_S = 1.0
+"""An arm that has stood for this long, and of which nothing was asked, is watched with less haste, ..."""
+_STARVED_S, _BUSY_S = 0.04, 10.0
+"""... unless states fail to come because the machine is busy; then not for this long."""
 _BRAKE_WITHIN_S = 0.12
 _BRAKE_LIMITS_RAD_S2 = 5.0, 30.0
 _REASON_S = 0.06
@@ -115,12 +120,16 @@ class _Worker:
         self._due_s = float("inf")
         self._fresh = Event()
         self._kicked_s = 0.0
+        self._polling = PollingThreads()
+        self._polling.hasten(_CALM_S)
         rate_hz = 1 / self._cycle_s
         try:
-            self._receive = rtde_receive.RTDEReceiveInterface(setup.address, rate_hz, list(RECEIVED))
+            with self._polling.starting():
+                self._receive = rtde_receive.RTDEReceiveInterface(setup.address, rate_hz, list(RECEIVED))
             self._latest = read_state(self._receive)
             raise_if(unsafe(self._latest))
-            self._control = rtde_control.RTDEControlInterface(setup.address, rate_hz)
+            with self._polling.starting():
+                self._control = rtde_control.RTDEControlInterface(setup.address, rate_hz)
             self._io = rtde_io.RTDEIOInterface(setup.address)
             self._set_up(setup)
         except RuntimeError as error:
@@ -135,11 +144,15 @@ class _Worker:
             self._listen_for_program()
             while self._connection.poll():
                 request = self._connection.recv()
+                self._polling.hasten(_CALM_S)
                 self._due_s = time.monotonic() + _HANDSHAKE_S
                 self._serve(request)
                 self._due_s = time.monotonic() + _HEARD_S
             if is_fresh and self._motion is not None:
+                self._polling.hasten(_CALM_S)
                 self._step(self._motion)
+            if self._motion is None:
+                self._polling.slacken()
             self._kick()
 
     def _wait(self) -> bool:
@@ -354,10 +367,13 @@ class _Worker:
 
     def _publish(self) -> None:
         """Pass every state on; when there are none any more, their age shows it to the parent."""
-        pause_s = self._cycle_s / 4
         while True:
+            if self._polling.are_slack:
+                time.sleep(_STANDING_S)
             if self._receive.getTimestamp() == self._latest["controller_s"]:
-                time.sleep(pause_s)
+                if time.monotonic() - self._latest["time_s"] > _STARVED_S:
+                    self._polling.hasten(_BUSY_S)
+                time.sleep(self._cycle_s / 4)
                 continue
             raw = read_state(self._receive)
             raw["progress"] = 0.0 if self._motion is None else self._motion.progress
