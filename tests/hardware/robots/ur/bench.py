@@ -6,6 +6,8 @@ import json
 import socket
 import time
 from dataclasses import dataclass
+from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
 import numpy as np
@@ -27,6 +29,7 @@ SPEED, ACCELERATION = 1.0, 4.0
 T_FLANGE_TOOL = make_pose(rotation_x(0.4), [0.01, -0.03, 0.15])
 PAYLOAD_KG, PAYLOAD_CENTER_M = 1.2, (0.0, -0.02, 0.07)
 STANDS_WITHIN_S = 0.5
+USUAL_SLACK_NS = 50_000
 VERSIONS = ["3.15", "5.11"]
 
 
@@ -42,6 +45,26 @@ def bent_way(duration_s: float = 1.2, end: FloatArray = NEAR) -> JointTrajectory
     return JointTrajectory(times_s, HOME + np.outer(share, end - HOME) + bend)
 
 
+def slack_ns(thread: int) -> int:
+    """How much later than asked for the system may wake a thread."""
+    return int(Path(f"/proc/{thread}/timerslack_ns").read_text())
+
+
+def may_change_threads() -> bool:
+    """As the kernel asks it: of another thread, also of one's own process."""
+    is_over = Event()
+    other = Thread(target=is_over.wait)
+    other.start()
+    try:
+        Path(f"/proc/{other.native_id}/timerslack_ns").write_text(str(USUAL_SLACK_NS))
+    except OSError:
+        return False
+    finally:
+        is_over.set()
+        other.join()
+    return True
+
+
 @dataclass
 class Bench:
     """A controller, and the robot that is connected to it."""
@@ -53,6 +76,15 @@ class Bench:
         """What the controller itself says."""
         state: dict[str, Any] = json.loads(self.controller.command("state"))
         return state
+
+    def worker(self) -> int:
+        """The process that talks to the controller."""
+        return self.robot._connected().worker.process_id
+
+    def is_calm(self) -> bool:
+        """Whether the arm has stood for so long that the two threads that receive look seldom."""
+        tasks = Path(f"/proc/{self.worker()}/task").iterdir()
+        return sum(slack_ns(int(task.name)) > 10 * USUAL_SLACK_NS for task in tasks) == 2
 
     def joints(self) -> FloatArray:
         return np.array(self.truth()["joints_rad"])

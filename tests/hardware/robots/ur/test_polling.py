@@ -11,33 +11,12 @@ from threading import Event, Thread
 import pytest
 
 from hardware.robots.ur.polling import PollingThreads
-from tests.hardware.robots.ur.bench import HOME, NEAR, Bench
+from tests.hardware.robots.ur.bench import HOME, NEAR, USUAL_SLACK_NS, Bench, may_change_threads, slack_ns
 from tests.patience import HANG_S, wait_until
 
-_USUAL_NS = 50_000
 _COUNTED_S = 1.0
 
-
-def _slack_ns(thread: int) -> int:
-    return int(Path(f"/proc/{thread}/timerslack_ns").read_text())
-
-
-def _may_change_threads() -> bool:
-    """As the kernel asks it: of another thread, also of one's own process."""
-    is_over = Event()
-    other = Thread(target=is_over.wait)
-    other.start()
-    try:
-        Path(f"/proc/{other.native_id}/timerslack_ns").write_text(str(_USUAL_NS))
-    except OSError:
-        return False
-    finally:
-        is_over.set()
-        other.join()
-    return True
-
-
-pytestmark = pytest.mark.skipif(not _may_change_threads(), reason="needs Linux and CAP_SYS_NICE")
+pytestmark = pytest.mark.skipif(not may_change_threads(), reason="needs Linux and CAP_SYS_NICE")
 
 
 @pytest.fixture
@@ -57,10 +36,10 @@ def test_a_thread_that_is_not_asked_wakes_later(polled: tuple[PollingThreads, in
     polling, thread = polled
     polling.slacken()
     assert polling.are_slack
-    assert _slack_ns(thread) > 10 * _USUAL_NS
+    assert slack_ns(thread) > 10 * USUAL_SLACK_NS
     polling.hasten(0.0)
     assert not polling.are_slack
-    assert _slack_ns(thread) <= _USUAL_NS
+    assert slack_ns(thread) <= USUAL_SLACK_NS
     assert os.sched_getscheduler(thread) == os.sched_getscheduler(0)
 
 
@@ -70,14 +49,14 @@ def test_haste_lasts_as_long_as_it_was_asked_for(polled: tuple[PollingThreads, i
     polling.hasten(0.0)
     polling.slacken()
     assert not polling.are_slack
-    assert _slack_ns(thread) <= _USUAL_NS
+    assert slack_ns(thread) <= USUAL_SLACK_NS
 
 
 def test_only_threads_that_began_inside_are_changed(polled: tuple[PollingThreads, int]) -> None:
     polling, _ = polled
-    before = _slack_ns(os.getpid())
+    before = slack_ns(os.getpid())
     polling.slacken()
-    assert _slack_ns(os.getpid()) == before
+    assert slack_ns(os.getpid()) == before
 
 
 def _wakes_per_s(process: int) -> float:
@@ -92,25 +71,17 @@ def _wakes_per_s(process: int) -> float:
     return (count() - before) / (time.monotonic() - began_s)
 
 
-def _worker(bench: Bench) -> int:
-    return bench.robot._connected().worker.process_id
-
-
-def _are_slack(process: int) -> bool:
-    tasks = Path(f"/proc/{process}/task").iterdir()
-    return sum(_slack_ns(int(task.name)) > 10 * _USUAL_NS for task in tasks) == 2  # receiving, control
-
-
+@pytest.mark.system
 def test_the_driver_of_a_standing_arm_wakes_seldom(bench: Bench) -> None:
-    worker = _worker(bench)
+    worker = bench.worker()
     # Two threads that look every 0.1 ms wake 5,800 times a second. A busy machine makes them do so at times.
-    wait_until(lambda: _are_slack(worker) and _wakes_per_s(worker) < 1500)
+    wait_until(lambda: bench.is_calm() and _wakes_per_s(worker) < 1500)
 
 
+@pytest.mark.system
 def test_a_move_is_driven_as_before(bench: Bench) -> None:
-    worker = _worker(bench)
-    wait_until(lambda: _are_slack(worker))
+    wait_until(bench.is_calm)
     move = bench.robot.move_joints([HOME, NEAR], 1.0, 4.0)
-    assert not _are_slack(worker)
+    assert not bench.is_calm()
     move.wait(HANG_S)
-    wait_until(lambda: _are_slack(worker))
+    wait_until(bench.is_calm)

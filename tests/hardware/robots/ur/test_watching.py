@@ -12,7 +12,7 @@ from core.motion.margin import PathMargin
 from core.motion.trajectory import JointTrajectory
 from hardware.errors import ProgramStopped, RobotError, TrackingLost
 from tests.awake import within
-from tests.hardware.robots.ur.bench import FAR, HOME, T_FLANGE_TOOL, Bench
+from tests.hardware.robots.ur.bench import FAR, HOME, T_FLANGE_TOOL, Bench, may_change_threads
 from tests.patience import HANG_S, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.punctual]
@@ -32,8 +32,13 @@ def long_way(here: np.ndarray) -> JointTrajectory:
     return JointTrajectory(times_s, here + np.outer(share, FAR - HOME))
 
 
+@pytest.mark.parametrize("is_calm", [False, True], ids=["just stopped", "stood long"])
 @pytest.mark.parametrize("fault", ["foreign moving", "foreign gap moving"])
-def test_an_arm_at_rest_that_another_program_moves_is_stopped(bench: Bench, fault: str) -> None:
+def test_an_arm_at_rest_that_another_program_moves_is_stopped(
+    bench: Bench, fault: str, is_calm: bool
+) -> None:
+    if is_calm and may_change_threads():
+        wait_until(bench.is_calm)
     before = bench.joints()
     with within(STOPPED_WITHIN_S):
         bench.controller.command(fault)

@@ -29,15 +29,11 @@ STANDS_STILL_S = 0.6
 SIGNALS = pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGSTOP], ids=["killed", "frozen"])
 
 
-def worker_of(bench: Bench) -> int:
-    return bench.robot._connected().worker.process_id
-
-
 @SIGNALS
 @pytest.mark.parametrize("kind", ["move_joints", "follow"])
 def test_in_a_move_it_is_noticed_and_the_arm_stands(bench: Bench, number: int, kind: str) -> None:
     move = bench.begin(kind)
-    worker = worker_of(bench)
+    worker = bench.worker()
     with within(STANDS_WITHIN_S + 0.1, "coming to rest"):
         with within(NOTICED_WITHIN_S, "being noticed"):
             os.kill(worker, number)
@@ -53,7 +49,7 @@ def test_in_a_move_it_is_noticed_and_the_arm_stands(bench: Bench, number: int, k
 def test_the_watchdog_alone_makes_the_arm_stand(bench: Bench, number: int) -> None:
     bench.begin("follow")
     bench.robot._connected().dashboard.close()
-    os.kill(worker_of(bench), number)
+    os.kill(bench.worker(), number)
     in_time(bench.seconds_to_rest(), STANDS_WITHIN_S, "coming to rest")
     # Without new targets the arm comes to rest at the last one, which may be before the watchdog has starved.
     wait_until(lambda: "watchdog starved" in bench.controller.command("log"), STANDS_WITHIN_S)
@@ -63,7 +59,7 @@ def test_the_watchdog_alone_makes_the_arm_stand(bench: Bench, number: int) -> No
 @pytest.mark.parametrize("kind", ["move_joints", "follow"])
 def test_a_machine_that_stood_still_is_no_fault(bench: Bench, kind: str) -> None:
     move = bench.begin(kind)
-    everything = " ".join(map(str, [bench.controller.pid, worker_of(bench), os.getpid()]))
+    everything = " ".join(map(str, [bench.controller.pid, bench.worker(), os.getpid()]))
     command = f"kill -STOP {everything}; sleep {STANDS_STILL_S}; kill -CONT {everything}"
     subprocess.run(["sh", "-c", command], check=True)
     move.wait(HANG_S)
@@ -71,7 +67,7 @@ def test_a_machine_that_stood_still_is_no_fault(bench: Bench, kind: str) -> None
 
 
 def test_a_standing_arm_whose_worker_froze_says_so(bench: Bench) -> None:
-    os.kill(worker_of(bench), signal.SIGSTOP)
+    os.kill(bench.worker(), signal.SIGSTOP)
     time.sleep(NOTICED_WITHIN_S)
     with pytest.raises(RobotLost):
         bench.robot.state()
@@ -82,7 +78,7 @@ def test_a_standing_arm_whose_worker_froze_says_so(bench: Bench) -> None:
 
 def test_a_stop_takes_the_second_path_and_says_so(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
     move = bench.begin("follow")
-    os.kill(worker_of(bench), signal.SIGSTOP)
+    os.kill(bench.worker(), signal.SIGSTOP)
     with caplog.at_level(logging.WARNING):
         bench.robot.stop()
     in_time(bench.seconds_to_rest(), 0.2, "coming to rest")
@@ -98,7 +94,7 @@ def test_leaving_stops_the_arm_and_leaves_nothing(controller: ControllerProcess)
     with driver(controller.address) as robot:
         bench = Bench(controller, robot)
         move = bench.begin("move_joints")
-        worker = worker_of(bench)
+        worker = bench.worker()
     assert not bench.is_moving()
     assert not psutil.pid_exists(worker)
     assert set(threading.enumerate()) <= threads
@@ -111,7 +107,7 @@ def test_leaving_a_frozen_or_killed_worker_leaves_nothing(controller: Controller
         threads = set(threading.enumerate())
         began_s = time.monotonic()
         with driver(controller.address) as robot:
-            worker = worker_of(Bench(controller, robot))
+            worker = Bench(controller, robot).worker()
             os.kill(worker, number)
         in_time(time.monotonic() - began_s, 4)
         assert not psutil.pid_exists(worker)
