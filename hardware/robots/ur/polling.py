@@ -61,7 +61,7 @@ class PollingThreads:
     def slacken(self) -> None:
         """Look seldom, unless there is haste; a state is known up to 4 ms later."""
         with self._lock:
-            if not self._are_slack and time.monotonic() > self._in_haste_until_s:
+            if self._threads and not self._are_slack and time.monotonic() > self._in_haste_until_s:
                 self._are_slack = True
                 self._policy = os.sched_getscheduler(0)
                 self._set(os.SCHED_OTHER, _SLACK_NS)

@@ -63,7 +63,7 @@ _STANDING_S = 0.02
 """How often both threads look around while the arm stands."""
 _CALM_S = 1.0
 """An arm that has stood for this long, and of which nothing was asked, is watched with less haste, ..."""
-_STARVED_S, _BUSY_S = 0.04, 10.0
+_STARVED_S, _BUSY_S = 0.06, 3.0
 """... unless states fail to come because the machine is busy; then not for this long."""
 _BRAKE_WITHIN_S = 0.12
 _BRAKE_LIMITS_RAD_S2 = 5.0, 30.0

@@ -14,7 +14,7 @@ from hardware.robots.ur.polling import PollingThreads
 from tests.hardware.robots.ur.bench import HOME, NEAR, USUAL_SLACK_NS, Bench, may_change_threads, slack_ns
 from tests.patience import HANG_S, wait_until
 
-_COUNTED_S = 1.0
+_COUNTED_S = 0.3
 
 pytestmark = pytest.mark.skipif(not may_change_threads(), reason="needs Linux and CAP_SYS_NICE")
 
