@@ -190,12 +190,11 @@ def risk_sentence(grid: PourGrid, risk: PourRisk, choice: PourChoice, paper: Pou
     """Say how sure the chosen pour is, and why it is not the paper's where it is another one."""
     said = tries_sentence(risk, choice.i, choice.j)
     if (choice.i, choice.j) == (paper.i, paper.j):
-        return f"{said} The largest P alone (the paper's choice) is there, too."
+        return f"{said} The paper's rule (largest P) chooses the same pour."
     n, clean = risk.n_tries[paper.i, paper.j], risk.n_clean[paper.i, paper.j]
     tried = f"clean in {clean} of {n} trial{'s' if n > 1 else ''}" if n else "which was not tried"
     return (
-        f"{said} By P alone (the paper's choice) it would be from {place_text(grid, paper.i, paper.j)}, "
-        f"{tried}."
+        f"{said} The paper's rule (largest P) would pour from {place_text(grid, paper.i, paper.j)}, {tried}."
     )
 
 

@@ -79,7 +79,7 @@ def test_tries_say_how_sure_a_pour_is(pours: PourGrid, choice: PourChoice) -> No
     tries[7][2] = [0, 4, 2]
     risk = PourRisk(60, joined(tries))
     assert risk_sentence(pours, risk, choice, choice).endswith(
-        "The largest P alone (the paper's choice) is there, too."
+        "The paper's rule (largest P) chooses the same pour."
     )
     surest = tries_sentence(risk, choice.i, choice.j).replace("\u00a0", " ")
     assert surest == "Clean pour: at least 81 % likely (13 of 13 trials clean)."
