@@ -18,6 +18,14 @@ class ReconstructionParameters(Group):
     voxel_m: float = quantity(
         0.002, "Edge of a voxel.", unit="m", source=f"{OURS}; {CODE}: 0.004", low=0.001, high=0.02
     )
+    fine_voxel_m: float = quantity(
+        0.0015,
+        "The same of an object whose box holds less than 5 litres, where it is finer: its wall may be thin.",
+        unit="m",
+        source=f"{OURS}: docs/decisions/0053",
+        low=0.001,
+        high=0.02,
+    )
     truncation_m: float | None = quantity(
         None,
         "Distance at which the signed distance is cut off; none: it follows the measured pose error.",

@@ -14,8 +14,8 @@ class RiskParameters(Group):
 
     n_tries: int = quantity(
         24,
-        "Most imagined pours with errors, spent on the most promising of the 24; 0: none, and the paper's "
-        "rule chooses.",
+        "Most imagined pours with errors, spent on the most promising of the 24, and as many again on the "
+        "surest where it seems to be as clean as wanted; 0: none, and the paper's rule chooses.",
         unit="",
         source=f"{OURS}: docs/decisions/0014; {PAPER}, Sec. III-B: 0",
         low=0,

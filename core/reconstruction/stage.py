@@ -49,6 +49,8 @@ from core.unseen_readings import UnseenReadings
 STAGE = "reconstruction"
 COARSE_VOXEL_M = 0.004
 """Edge of the voxels in which the object is looked for."""
+SMALL_M3 = 0.005
+"""Box of an object that is fused in finer voxels: 1.5 million of 1.5 mm."""
 STRAY_VIEW_M = 0.01
 VOXELS_IN_FRONT = 4.0
 FRONT_PER_VIEW_ERROR = 3.0
@@ -138,9 +140,10 @@ def _fuse_finely(
     planes: Sequence[PlaneImage] | None,
     steps: Steps,
 ) -> _Found:
-    truncation = choose_truncation(parameters, parameters.voxel_m, error_m)
     block = _down_to_support(found, support_m).box(found.volume)
-    volume = fuse(scan, block, parameters.voxel_m, truncation, parameters.max_depth_m, steps, planes)
+    voxel_m = voxel_of(block, parameters)
+    truncation = choose_truncation(parameters, voxel_m, error_m)
+    volume = fuse(scan, block, voxel_m, truncation, parameters.max_depth_m, steps, planes)
     return _Found(volume, whole(volume), found.table)
 
 
@@ -328,6 +331,16 @@ def fuse(
         volume.integrate(frame, scan.intrinsics, max_depth_m, facing)
         steps.next()
     return volume
+
+
+def voxel_of(block: CropBox, parameters: ReconstructionParameters) -> float:
+    """Return the edge of the voxels in which an object's block is fused.
+
+    No wall becomes thinner than they allow, at the cost of the hollow; finer ones take longer, so that they
+    are used where there are few (docs/decisions/0053).
+    """
+    size_m3 = float(np.prod(np.subtract(block.max_m, block.min_m)))
+    return min(parameters.voxel_m, parameters.fine_voxel_m) if size_m3 < SMALL_M3 else parameters.voxel_m
 
 
 @dataclass(frozen=True)

@@ -148,7 +148,8 @@ class _RoundReporter(Reporter):
         self._n_before, self._n_round, self._n_most = n_before, n_round, n_most
 
     def progress(self, stage: str, done: float, total: float) -> None:
-        self._face.progress(stage, self._n_before + self._n_round * done / total, self._n_most)
+        n_done = self._n_before + self._n_round * done / total
+        self._face.progress(stage, min(n_done, self._n_most), self._n_most)
 
     def warn(self, sentence: str) -> None:
         self._face.warn(sentence)
@@ -169,7 +170,7 @@ def run_race(
     center_m = target.aabb_m.mean(axis=0)
     while (planned := race.next_round()) is not None:
         (i, j), tries = planned
-        context.reporter.progress(STAGE, race.n_spent, race.n_most)
+        context.reporter.progress(STAGE, min(race.n_spent, race.n_most), race.n_most)
         pour = Pour(grid.pivot_m[i, j], float(grid.theta_rad[i]))
         cups = [draw_cups(parameters, k, grid.n_cups, center_m) for k in tries]
         drawn_runs = iter(runs.of(context, [one for drawn in cups for one in drawn]))

@@ -9,7 +9,8 @@ import trimesh
 
 from core.errors import Cancelled, StageError
 from core.mesh import TriangleMesh
-from core.reconstruction.stage import reconstruct
+from core.reconstruction.stage import reconstruct, voxel_of
+from core.scan.model import crop_box
 
 PLATFORM_M = 0.08
 TABLE_M = 0.02
@@ -83,6 +84,32 @@ def test_a_wall_of_two_millimetres_keeps_its_two_sides(simulated, parameters, li
         outer, inner = radii_m(mesh, angle, heights_m)
         assert outer == pytest.approx(0.045, abs=0.0015)
         assert inner == pytest.approx(0.043, abs=0.0025)
+
+
+def test_finer_voxels_leave_a_thin_walled_cup_more_room(simulated, parameters, listener):
+    scan = simulated("thin_cup", translation_error_m=0.0005)
+    heights_m = np.linspace(PLATFORM_M + 0.01, PLATFORM_M + 0.04, 7)
+    short_m = []
+    for voxel_m in (parameters.fine_voxel_m, parameters.voxel_m):
+        mesh = reconstruct(scan, changed(parameters, fine_voxel_m=voxel_m), listener).mesh
+        around = np.linspace(0, 2 * np.pi, 36, endpoint=False)
+        short_m.append(0.043 - np.mean([radii_m(mesh, angle, heights_m)[1] for angle in around]))
+    assert abs(short_m[0]) < 0.75 * abs(short_m[1])
+
+
+@pytest.mark.parametrize(
+    ("size_m", "settings", "voxel_m"),
+    [
+        ((0.10, 0.10, 0.10), {}, 0.0015),
+        ((0.25, 0.25, 0.30), {}, 0.002),
+        ((0.10, 0.10, 0.10), {"voxel_m": 0.001}, 0.001),
+        ((0.10, 0.10, 0.10), {"fine_voxel_m": 0.003}, 0.002),
+    ],
+)
+def test_small_objects_have_fine_voxels_and_none_has_coarser_ones_than_asked_for(
+    parameters, size_m, settings, voxel_m
+):
+    assert voxel_of(crop_box(np.zeros(3), np.array(size_m)), changed(parameters, **settings)) == voxel_m
 
 
 @pytest.mark.parametrize("height_m", [0.08, 0.0801, 0.083, 0.0815])

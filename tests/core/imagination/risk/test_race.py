@@ -66,6 +66,38 @@ def test_the_tries_are_never_more_than_allowed():
     assert len(rounds) == 3
 
 
+def spills_at_times(k, every):
+    return int(k % every == every - 1)
+
+
+def test_a_pour_that_seems_clean_enough_is_tried_until_it_is_sure():
+    grid = grid_of(np.zeros((8, 3), dtype=int))
+    risk, rounds = run(grid, lambda pour, k: spills_at_times(k, 4))
+    n_tries = RiskParameters().n_tries
+    assert len(rounds) * ROUND > n_tries, "after these none is sure"
+    surest = choose_pour(grid, CUP, risk=risk)
+    assert risk.clean_at_least[surest.i, surest.j] >= RiskParameters().wanted_clean
+    assert set(rounds[n_tries // ROUND :]) == {(surest.i, surest.j)}
+
+
+def test_a_pour_that_does_not_seem_so_gets_no_further_tries():
+    risk, rounds = run(grid_of(np.zeros((8, 3), dtype=int)), lambda pour, k: spills_at_times(k, 2))
+    assert len(rounds) * ROUND == RiskParameters().n_tries
+    assert risk.clean_at_least.max() < RiskParameters().wanted_clean
+
+
+def test_further_tries_come_to_an_end():
+    settings = RiskParameters(n_tries=8, sure=0.99, wanted_clean=0.88)
+    _, rounds = run(grid_of(np.zeros((8, 3), dtype=int)), lambda pour, k: 0, settings)
+    assert len(rounds) * ROUND == 2 * settings.n_tries
+
+
+def test_more_may_be_wanted_than_is_tried_for():
+    settings = RiskParameters(sure=0.7, wanted_clean=0.85)
+    risk, _ = run(grid_of(np.zeros((8, 3), dtype=int)), lambda pour, k: 0, settings)
+    assert risk.clean_at_least.max() >= settings.wanted_clean
+
+
 def test_earlier_tries_count_and_only_pours_in_the_order_are_tried_further():
     grid = grid_of(np.zeros((8, 3), dtype=int))
     known, _ = run(grid, lambda pour, k: 0)

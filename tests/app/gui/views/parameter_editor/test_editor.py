@@ -165,7 +165,7 @@ def test_the_filter_shows_what_matches_by_name_or_description(qtbot, editor):
     assert rows(editor) == {}
     assert editor.findChild(QLabel, "parameter_none").text() == "No parameter matches the filter."
     line.clear()
-    assert len(rows(editor)) == 16
+    assert len(rows(editor)) == 17
 
 
 def test_only_what_differs_can_be_shown(qtbot, editor):
