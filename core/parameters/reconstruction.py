@@ -20,7 +20,7 @@ class ReconstructionParameters(Group):
     )
     fine_voxel_m: float = quantity(
         0.0015,
-        "The same of an object whose box holds less than 5 litres, where it is finer: its wall may be thin.",
+        "Edge of a voxel of an object whose box holds less than 5 litres, where finer: walls may be thin.",
         unit="m",
         source=f"{OURS}: docs/decisions/0053",
         low=0.001,

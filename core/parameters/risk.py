@@ -78,3 +78,8 @@ class RiskParameters(Group):
         low=0,
         high=0.4,
     )
+
+    @property
+    def sure_enough(self) -> float:
+        """The lower 95 % bound at which no more pours are tried: never less than what is wanted."""
+        return max(self.sure, self.wanted_clean)

@@ -54,5 +54,5 @@ def _tries_without_a_spill(parameters: Parameters) -> int:
     """After so many clean tries of a pour, besides the planned one, there are no more."""
     settings = parameters.risk
     n_tries = np.arange(settings.n_tries + 1)
-    is_sure = lower_bound(n_tries + 1, n_tries + 1) >= settings.sure
+    is_sure = lower_bound(n_tries + 1, n_tries + 1) >= settings.sure_enough
     return int(is_sure.argmax()) if is_sure.any() else settings.n_tries

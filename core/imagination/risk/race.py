@@ -57,7 +57,7 @@ class Race:
         risk, settings = self.risk, self._settings
         if self._spent < settings.n_tries:
             pour, left = self._most_promising(risk), settings.n_tries - self._spent
-            enough = max(settings.sure, settings.wanted_clean)
+            enough = settings.sure_enough
         else:
             pour, left = surest_first(risk, [*self._order])[0], 2 * settings.n_tries - self._spent
             enough = settings.wanted_clean

@@ -140,7 +140,10 @@ def _try_fewer(
 
 
 class _RoundReporter(Reporter):
-    """Reports a round's progress as that of the whole race, so that it never goes back."""
+    """Reports a round's progress as that of the whole race, so that it never goes back.
+
+    The further tries of the surest pour are not counted: most races have none.
+    """
 
     def __init__(self, face: Reporter, n_before: int, n_round: int, n_most: int) -> None:
         super().__init__()
@@ -170,7 +173,8 @@ def run_race(
     center_m = target.aabb_m.mean(axis=0)
     while (planned := race.next_round()) is not None:
         (i, j), tries = planned
-        context.reporter.progress(STAGE, min(race.n_spent, race.n_most), race.n_most)
+        reporter = _RoundReporter(context.reporter, race.n_spent, len(tries), race.n_most)
+        reporter.progress(STAGE, 0.0, 1.0)
         pour = Pour(grid.pivot_m[i, j], float(grid.theta_rad[i]))
         cups = [draw_cups(parameters, k, grid.n_cups, center_m) for k in tries]
         drawn_runs = iter(runs.of(context, [one for drawn in cups for one in drawn]))
@@ -182,9 +186,6 @@ def run_race(
             )
             for drawn in cups
         ]
-        inside = replace(
-            context, reporter=_RoundReporter(context.reporter, race.n_spent, len(tries), race.n_most)
-        )
-        outcomes: list[PourOutcome] = inside.run(tasks, STAGE)
+        outcomes: list[PourOutcome] = replace(context, reporter=reporter).run(tasks, STAGE)
         race.record((i, j), [outcome.n_spilled for outcome in outcomes])
     return race.risk

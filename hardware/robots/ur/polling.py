@@ -19,6 +19,7 @@ from threading import Lock
 _SLACK_NS = 4_000_000
 """Less than a cycle at 125 Hz, so that no state waits for the next one."""
 _USUAL_SLACK_NS = 50_000
+"""The system's own."""
 _TASKS = Path("/proc/self/task")
 
 
@@ -45,10 +46,10 @@ class PollingThreads:
 
     @contextmanager
     def starting(self) -> Iterator[None]:
-        """Threads that begin inside are those that are meant."""
+        """Threads that begin inside are those that are meant, as far as they may be changed."""
         before = _tasks()
         yield
-        self._threads |= _tasks() - before
+        self._threads |= {thread for thread in _tasks() - before if _set_slack(thread, _USUAL_SLACK_NS)}
 
     def hasten(self, for_s: float) -> None:
         """Look as often as ur_rtde does by itself, at least for this long."""
@@ -71,7 +72,15 @@ class PollingThreads:
         for thread in self._threads:
             with suppress(OSError):
                 os.sched_setscheduler(thread, policy, priority)
-                Path(f"/proc/{thread}/timerslack_ns").write_text(str(slack_ns))
+            _set_slack(thread, slack_ns)
+
+
+def _set_slack(thread: int, slack_ns: int) -> bool:
+    """Whether the system allows it: it asks for `CAP_SYS_NICE`, also of threads of one's own process."""
+    with suppress(OSError):
+        Path(f"/proc/{thread}/timerslack_ns").write_text(str(slack_ns))
+        return True
+    return False
 
 
 def _tasks() -> set[int]:
