@@ -22,6 +22,8 @@ def simulate_scan(
     reporter: Reporter,
     noise: DepthNoise | None = None,
     cell: CellSettings | None = None,
+    *,
+    is_lit: bool = True,
 ) -> Scan:
     """Put an object on the simulated cell's platform at random, plan its views and take them.
 
@@ -33,6 +35,7 @@ def simulate_scan(
         reporter: called after each view.
         noise: the camera's; none: the cell's.
         cell: a simulated one, with its own noise; none: the shipped one.
+        is_lit: whether there is light for the colour images, which take a quarter of the time.
 
     Raises:
         InputError: the object does not fit on the platform.
@@ -40,7 +43,7 @@ def simulate_scan(
         Cancelled: on request.
     """
     settings = simulated_cell(noise) if cell is None else cell
-    world = world_with(mesh, settings.place, seed, object_space(settings))
+    world = world_with(mesh, settings.place, seed, object_space(settings), is_lit=is_lit)
     with open_cell(settings, world, seed) as opened:
         plan = plan_scan(opened, reporter)
         planned = cell_for_plan(opened, plan)

@@ -69,9 +69,13 @@ class SimulatedDepthCamera:
         hits = self._world.cast(T_base_camera[:3, 3], directions)
         unit_rays = directions / self._ray_lengths[..., None]
         depth = self._depth(T_base_camera, hits, unit_rays, random)
-        in_shadow = self._world.hidden(hits.points_m, self._world.lamp_m)
-        color = shade(hits, unit_rays, self._world.lamp_m - hits.points_m, in_shadow)
-        return color, depth.astype(np.float32)
+        return self._color(hits, unit_rays), depth.astype(np.float32)
+
+    def _color(self, hits: Hits, unit_rays: FloatArray) -> ColorImage:
+        lamp_m = self._world.lamp_m
+        if lamp_m is None:
+            return np.zeros((HEIGHT, WIDTH, 3), dtype=np.uint8)
+        return shade(hits, unit_rays, lamp_m - hits.points_m, self._world.hidden(hits.points_m, lamp_m))
 
     def _depth(
         self, T_base_camera: FloatArray, hits: Hits, unit_rays: FloatArray, random: np.random.Generator

@@ -17,13 +17,15 @@ MAX_OFFSET_M = 0.03
 _PLACING_DRAWS = 200
 
 
-def world_with(mesh: TriangleMesh, place: PlaceSettings, seed: int, space: CropBox | None = None) -> World:
+def world_with(
+    mesh: TriangleMesh, place: PlaceSettings, seed: int, space: CropBox | None = None, *, is_lit: bool = True
+) -> World:
     """Return the simulated world with an object on its platform; the transparent platform is not seen.
 
-    Args, errors: see `place_on_platform`.
+    Args, errors: see `place_on_platform`; without light its colour images are black.
     """
     table = np.array([*place.platform_center_m[:2], place.table_height_m])
-    return World(transform_mesh(mesh, place_on_platform(mesh, seed, place, space)), table)
+    return World(transform_mesh(mesh, place_on_platform(mesh, seed, place, space)), table, is_lit=is_lit)
 
 
 def place_on_platform(

@@ -37,9 +37,12 @@ class World:
     """An object, given in the robot's base frame, or none, above a table of 1.8 m by 1.8 m.
 
     Ray casting is Embree's, through Open3D: no GL, no window.
+
+    Attributes:
+        lamp_m: (3,) where its lamp is; none: it is dark, which a depth camera does not mind.
     """
 
-    def __init__(self, mesh: TriangleMesh | None, table_center_m: FloatArray) -> None:
+    def __init__(self, mesh: TriangleMesh | None, table_center_m: FloatArray, *, is_lit: bool = True) -> None:
         import open3d as o3d
 
         self._tensor: Any = o3d.core.Tensor
@@ -47,7 +50,7 @@ class World:
         self._object_id = _NO_OBJECT if mesh is None else self._add(mesh.vertices_m, mesh.faces)
         corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * _TABLE_HALF_SIZE_M
         self._add(corners + table_center_m, np.array([[0, 1, 2], [0, 2, 3]]))
-        self.lamp_m: FloatArray = table_center_m + np.array([0.7, -0.5, 1.6])
+        self.lamp_m: FloatArray | None = table_center_m + np.array([0.7, -0.5, 1.6]) if is_lit else None
 
     def cast(self, origin_m: FloatArray, directions: FloatArray) -> Hits:
         """Follow rays (H, W, 3) from one origin (3,)."""

@@ -109,13 +109,16 @@ def known_surface(
     """
     if source == "mesh":
         return GivenMesh(placed.true)
-    return reconstruct(take_scan(mesh, parameters.seed, reporter), parameters.reconstruction, reporter)
+    scan = take_scan(mesh, parameters.seed, reporter, is_lit=False)
+    return reconstruct(scan, parameters.reconstruction, reporter)
 
 
-def take_scan(mesh: TriangleMesh, seed: int, reporter: Reporter) -> Scan:
+def take_scan(mesh: TriangleMesh, seed: int, reporter: Reporter, *, is_lit: bool) -> Scan:
     """Scan an object, as `place_object` puts it there with the same seed, with noise and pose errors.
+
+    Without light its colour images are black, and its depth images the same.
 
     Raises:
         PoursightError: it cannot be scanned.
     """
-    return simulate_scan(mesh, seed, reporter, cell=cell_for(mesh))
+    return simulate_scan(mesh, seed, reporter, cell=cell_for(mesh), is_lit=is_lit)

@@ -358,7 +358,8 @@ class _Work:
 
     def _scan(self) -> Scan:
         mesh, seed = self._mesh(), self.task.parameters.seed
-        return self._once("scan", "images", lambda: take_scan(mesh, seed, self._reporter))
+        is_seen = any(variant.by_looks for variant in self.task.variants)
+        return self._once("scan", "images", lambda: take_scan(mesh, seed, self._reporter, is_lit=is_seen))
 
     def _placed(self) -> PlacedObject:
         mesh = self._mesh()

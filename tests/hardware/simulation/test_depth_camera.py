@@ -56,6 +56,17 @@ def test_the_object_hides_the_table(world: World) -> None:
     assert depth[10, 10] == pytest.approx(0.7, abs=1e-4)
 
 
+def test_in_the_dark_only_the_colour_image_is_missing(world: World) -> None:
+    block = builtin_object("block").translated(np.array([0, 0, 0.065]))
+    dark = World(block, TABLE, is_lit=False)
+    color, depth = SimulatedDepthCamera(dark, DepthNoise()).capture(slanted_view(), random())
+    lit_color, lit_depth = SimulatedDepthCamera(world, DepthNoise()).capture(slanted_view(), random())
+    np.testing.assert_array_equal(depth, lit_depth)
+    assert lit_color.any()
+    assert not color.any()
+    assert color.shape == lit_color.shape
+
+
 def test_noise_at_seven_tenths_of_a_metre() -> None:
     # Slightly slanted: what a level plane loses to the steps depends on where it lies between two of them.
     depth = np.broadcast_to(np.linspace(0.66, 0.74, WIDTH), (HEIGHT, WIDTH))
