@@ -10,7 +10,7 @@ from app.jobs.messages import Status
 
 if TYPE_CHECKING:
     from core.geometry import FloatArray
-    from core.motion.pour.plan import PlannedMove, PourPlan
+    from core.motion.pour.plan import PlannedMove, PourPlan, Segment
     from hardware.interfaces import ReadyStep, RobotState
 
 
@@ -52,7 +52,7 @@ class ArmStatus(Status):
         state: the newest; none if it does not answer.
         is_gripper_closed: as read back; none if that is not known.
         problem: a sentence, if it cannot be used as it is; empty if it can.
-        must_back_off: whether a run was stopped midway, so that the arm has to back off first.
+        stopped_in: the move in which a run was stopped midway; none if none was.
         is_holding: whether the gripper holds something; none where it does not report that.
         grip_width_m: between its fingers; none where it does not report that.
     """
@@ -60,9 +60,14 @@ class ArmStatus(Status):
     state: RobotState | None
     is_gripper_closed: bool | None
     problem: str
-    must_back_off: bool = False
+    stopped_in: Segment | None = None
     is_holding: bool | None = None
     grip_width_m: float | None = None
+
+    @property
+    def must_back_off(self) -> bool:
+        """Whether a run was stopped midway, so that the arm has to back off first."""
+        return self.stopped_in is not None
 
 
 @dataclass(frozen=True)

@@ -83,9 +83,10 @@ class ConnectedArm:
         self._thread.start()
 
     @property
-    def must_back_off(self) -> bool:
-        """Whether a run was stopped midway."""
-        return self.pouring is not None and self.pouring.is_interrupted
+    def stopped_in(self) -> Segment | None:
+        """The move in which a run was stopped midway; none if none was."""
+        move = None if self.pouring is None else self.pouring.interrupted_move
+        return None if move is None else move.name
 
     @property
     def is_lost(self) -> bool:
@@ -108,7 +109,7 @@ class ConnectedArm:
         problem = self._problem(self.arm.robot.state())
         if problem:
             raise RobotNotReady(problem)
-        if self.must_back_off:
+        if self.stopped_in is not None:
             raise MotionError("The arm was stopped during a run; back off first.")
 
     def left_by_earlier_program(self, pouring: Pouring, cell: PourCell, known: str) -> MotionError:
@@ -156,11 +157,11 @@ class ConnectedArm:
             gripper = self.arm.gripper
             is_closed, is_holding, width_m = gripper.is_closed, gripper.is_holding, gripper.width_m
         except RobotError as error:
-            is_looked_after = self.is_at_work or self.must_recover or self.must_back_off
+            is_looked_after = self.is_at_work or self.must_recover or self.stopped_in is not None
             if isinstance(error, RobotLost) and not is_looked_after:
                 raise
-            return ArmStatus(None, None, str(error), self.must_back_off)
-        return ArmStatus(state, is_closed, self._problem(state), self.must_back_off, is_holding, width_m)
+            return ArmStatus(None, None, str(error), self.stopped_in)
+        return ArmStatus(state, is_closed, self._problem(state), self.stopped_in, is_holding, width_m)
 
     def _problem(self, state: RobotState) -> str:
         unready = unreadiness(state.safety_mode, state.robot_mode)

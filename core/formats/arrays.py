@@ -22,6 +22,13 @@ _RECORDING: _Spec = {
 }
 _DROP: _Spec = {"drop_positions_m": ("float", ("N", 3)), "retained": ("bool", ("N",)), **_RECORDING}
 _CAPACITY: _Spec = {"heights_m": ("float", ("H",)), "volumes_ml": ("float", ("H",))}
+_HOLLOWS: _Spec = {
+    "hollow_origin_m": ("float", (2,)),
+    "hollow_pitch_m": ("float", ()),
+    "hollow_holds": ("bool", ("X", "Y")),
+    "hollow_rim_m": ("float", ("X", "Y")),
+    "hollow_floor_m": ("float", ("X", "Y")),
+}
 _HOLDING: _Spec = {
     "tilt_rad": ("float", ("S",)),
     "direction_rad": ("float", ("D",)),
@@ -63,7 +70,7 @@ _SPECS: Mapping[tuple[str, str], _Spec] = {
     ("table", "outcome.npz"): _TABLE,
 }
 """By folder and name. `plan.npz` is not among them: the plan's digest covers it."""
-_NOT_EMPTY = {"S", "P", "V", "F", "W", "G"}
+_NOT_EMPTY = {"S", "P", "V", "F", "W", "G", "X", "Y"}
 _KINDS = {"float": "fiu", "int": "iu", "bool": "b"}
 _POUR = re.compile(r"(pour_\d+_\d+_).+")
 
@@ -82,6 +89,8 @@ def check_arrays(path: Path, arrays: Mapping[str, AnyArray]) -> None:
         _check_faces(arrays)
     if path.name == "capacity.npz" and "time_s" in arrays:
         _check(arrays, _RECORDING)
+    if path.name == "capacity.npz" and "hollow_pitch_m" in arrays:
+        _check(arrays, _HOLLOWS)
     for prefix in sorted({match[1] for name in arrays if (match := _POUR.fullmatch(name))}):
         _check(arrays, {prefix + name: kind_and_shape for name, kind_and_shape in _RECORDING.items()})
 

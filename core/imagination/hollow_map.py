@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from core.geometry import BoolArray, FloatArray, IntArray
+from core.geometry import AnyArray, BoolArray, FloatArray, IntArray
 from core.imagination.bullet_world import GRAVITY_M_S2
 
 _ENERGY = 2.0
@@ -36,11 +37,45 @@ class HollowMap:
         rims: FloatArray = self.rim_m[i, j]
         return rims
 
+    @property
+    def lowest_m(self) -> float:
+        """Height of the inner floor; infinity where nothing is held at all."""
+        return float(self.floor_m.min())
+
+    def holds_at(self, places_m: FloatArray, height_m: float) -> BoolArray:
+        """Return (n,) whether something at a height is held at (n, 2) places."""
+        i, j = self._nearest(places_m)
+        held: BoolArray = (self.floor_m[i, j] <= height_m) & (height_m <= self.rim_m[i, j])
+        return held
+
     def room_at(self, places_m: FloatArray) -> FloatArray:
         """Return (n,) distances of (n, 2) places from the nearest one where nothing is held; there, zero."""
         i, j = self._nearest(places_m)
         rooms: FloatArray = self._room_m[i, j]
         return rooms
+
+    def to_arrays(self) -> dict[str, AnyArray]:
+        """Return what `from_arrays` makes it from: finite, heights rounded to less than a micrometre."""
+        holds = np.isfinite(self.floor_m)
+        rim_m, floor_m = (np.where(holds, heights_m, 0.0) for heights_m in (self.rim_m, self.floor_m))
+        return {
+            "hollow_origin_m": self.origin_m,
+            "hollow_pitch_m": np.array(self.pitch_m),
+            "hollow_holds": holds,
+            "hollow_rim_m": rim_m.astype(np.float32),
+            "hollow_floor_m": floor_m.astype(np.float32),
+        }
+
+    @staticmethod
+    def from_arrays(arrays: Mapping[str, AnyArray]) -> HollowMap:
+        """Make one from its arrays."""
+        holds = arrays["hollow_holds"]
+        return HollowMap(
+            origin_m=arrays["hollow_origin_m"],
+            pitch_m=float(arrays["hollow_pitch_m"]),
+            rim_m=np.where(holds, arrays["hollow_rim_m"], -np.inf).astype(float),
+            floor_m=np.where(holds, arrays["hollow_floor_m"], np.inf).astype(float),
+        )
 
     @cached_property
     def _room_m(self) -> FloatArray:

@@ -12,6 +12,8 @@ from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import FloatArray, IntArray
 from core.quality.view_quality import ViewQuality
 
+GOOD, USABLE, AGAIN = "good", "usable", "scan again"
+VERDICTS = (GOOD, USABLE, AGAIN)
 FACTS_FILE = "quality.json"
 ARRAYS_FILE = "quality.npz"
 FEWEST_TABLES = 3
@@ -27,7 +29,7 @@ class ScanQuality:
         cavity: what no view saw inside openings.
         n_views: (V,) in how many views each vertex of the reconstructed mesh was seen.
         unseen_share: share of its surface, without what looks down, that no view saw.
-        verdict: "good", "usable" or "scan again".
+        verdict: one of `VERDICTS`.
         reasons: a plain sentence for each reason; the first begins with the verdict.
     """
 

@@ -14,14 +14,21 @@ import numpy as np
 from core.geometry import BoolArray, FloatArray, IntArray, invert_pose, transform_points
 from core.mesh import TriangleMesh
 from core.quality.cavity import find_hidden_cavity
-from core.quality.measures import HiddenCavity, ScanQuality, residual_m, table_sd_m
+from core.quality.measures import (
+    AGAIN,
+    GOOD,
+    USABLE,
+    VERDICTS,
+    HiddenCavity,
+    ScanQuality,
+    residual_m,
+    table_sd_m,
+)
 from core.quality.view_quality import ModelResiduals, ViewQuality, check_view
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import CropBox, RgbdFrame, Scan
 
-GOOD, USABLE, AGAIN = "good", "usable", "scan again"
-VERDICTS = (GOOD, USABLE, AGAIN)
 TABLE_SD_USABLE_M, TABLE_SD_AGAIN_M = 0.0025, 0.006
 """With refined poses the surface errs by 1 mm from 3.5 mm on, and walls get lost from 8.5 mm on."""
 RESIDUAL_USABLE_M, RESIDUAL_AGAIN_M = 0.001, 0.0014

@@ -100,6 +100,14 @@ class Pouring:
         """Whether a run was stopped on its path, so that the arm has to back off first."""
         return self._interrupted is not None
 
+    @property
+    def interrupted_move(self) -> PlannedMove | None:
+        """In which the arm was stopped on its path; none if it was not."""
+        if self._interrupted is None:
+            return None
+        _, moves, index = self._interrupted
+        return moves[index]
+
     def plan(self) -> FreshPlan:
         """Plan from the present configuration.
 

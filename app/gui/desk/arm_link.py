@@ -15,6 +15,7 @@ from app.jobs.host import Host
 from core.errors import PoursightError
 
 if TYPE_CHECKING:
+    from core.geometry import FloatArray
     from hardware.robots.ur.stop_line import StopLine
 
 CONFIRMED_WITHIN_S = 1.0
@@ -38,6 +39,8 @@ class ArmLink(QObject):
         connected: which arm; none if none is.
         status: the newest; none before the first one.
         farewell: why the arm is no longer connected, in a sentence; empty if that was requested.
+        last_seen_rad: (6,) joint angles as the arm reported them last, also once it is disconnected.
+        was_stopped: whether STOP was pressed, and no arm has been connected since.
     """
 
     changed = Signal()
@@ -49,6 +52,8 @@ class ArmLink(QObject):
         self.connected: ArmConnected | None = None
         self.status: ArmStatus | None = None
         self.farewell = ""
+        self.last_seen_rad: FloatArray | None = None
+        self.was_stopped = False
         self._arm, self._scan = arm, scan
         self._line: StopLine | None = None
         self._stops = ThreadPoolExecutor(_STOPS_AT_ONCE, "stop")
@@ -85,6 +90,8 @@ class ArmLink(QObject):
             self._leave(event.sentence)
         elif isinstance(event, ArmStatus):
             self.status, self._heard_s = event, time.monotonic()
+            if event.state is not None:
+                self.last_seen_rad = event.state.joints_rad
             self.changed.emit()
         elif isinstance(event, StopDone) and self._pressed_s is not None:
             self._answer(StopDone(time.monotonic() - self._pressed_s, event.sentence))
@@ -101,7 +108,13 @@ class ArmLink(QObject):
             self._failure = self.tr("No arm is connected: there was nothing to stop.")
             self._give_up()
         else:
+            self.was_stopped = True
             self._confirmation.start()
+
+    def forget_place(self) -> None:
+        """Another cell was chosen: what was seen of the former one's arm says nothing of this one's."""
+        if self.connected is None:
+            self.last_seen_rad, self.was_stopped = None, False
 
     def close(self) -> None:
         """Close the channel."""
@@ -116,6 +129,7 @@ class ArmLink(QObject):
 
         self._close_line()
         self.connected, self.status, self.farewell = arm, None, ""
+        self.last_seen_rad, self.was_stopped = None, False
         self._heard_s, self._was_silent = time.monotonic(), False
         if arm.stop_address is not None:
             self._line = StopLine(arm.stop_address)

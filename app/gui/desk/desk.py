@@ -70,6 +70,7 @@ class Desk(QObject):
         self.jobs.event_received.connect(self._take_news)
         self.jobs.finished.connect(lambda *_: self.workspace.refresh())
         self.jobs.failed.connect(lambda *_: self.workspace.refresh())
+        self.cell.changed.connect(self.arm.forget_place)
         self.cell.failed.connect(self.message)
         self.background.failed.connect(self.message)
         self.workspace.edited.connect(self._remember_parameters)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from app.gui.views.state_mark import State
 from core.pipeline.freshness import Freshness
 from core.pipeline.session_view import SessionView
+from core.quality.measures import AGAIN
 
 if TYPE_CHECKING:
     from app.gui.desk.workspace import Workspace
@@ -55,7 +56,7 @@ def with_failure(states: Mapping[str, PageState], page: str | None) -> dict[str,
     """Return the states with the page marked whose last job failed, unless another one runs there."""
     if page is None or page not in states or states[page].word == "running":
         return dict(states)
-    return dict(states) | {page: PageState("failed", states[page].figure)}
+    return dict(states) | {page: PageState("failed")}
 
 
 def _word(workspace: Workspace, stages: Sequence[str]) -> State:
@@ -73,6 +74,8 @@ def _scan(workspace: Workspace) -> PageState:
         return PageState("fresh", workspace.tr("mesh"))
     if not workspace.has("scan"):
         return PageState("empty")
+    if workspace.view is not None and workspace.view.scan_verdict == AGAIN:
+        return PageState("failed", workspace.tr("scan again"))
     record = workspace.record("scan")
     n = 0 if record is None else sum(name.endswith(".color.png") for name in record.files)
     return PageState("fresh", workspace.tr("{n} views").format(n=n))

@@ -312,7 +312,7 @@ class Tab(QAbstractButton):
         font.setPointSizeF(self.font().pointSizeF() - 1)
         painter.setFont(font)
         painter.setPen(theme.color("muted"))
-        is_told = state.figure and state.word in ("fresh", "running")
+        is_told = state.figure and state.word in ("fresh", "running", "failed")
         text = state.figure if is_told else state_word(state.word)
         area = QRect(mark.right() + GRID_PX // 2 + 2, mark.top() - 2, inside.right() - mark.right(), 18)
         painter.drawText(area, Qt.AlignmentFlag.AlignVCenter, text)

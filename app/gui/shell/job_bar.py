@@ -198,6 +198,8 @@ def next_step(
             return None
         if states[page].word == "fresh":
             continue
+        if page == "scan" and states[page].word == "failed":
+            return NextStep(page, translate("NextStep", "Next: scan the object again"))
         if page == "robot" and shown not in ("pours", "robot"):
             return NextStep("pours", words["pours"])
         return NextStep(page, words[page])

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QThread, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QKeyEvent
-from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QMessageBox, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from app.gui.desk.desk import Desk
@@ -19,6 +19,7 @@ from app.gui.desk.page_states import page_states, with_failure
 from app.gui.pages.page import Page, SplitView
 from app.gui.pages.registry import OTHERS, WORK, import_page, make_page, tab_facts
 from app.gui.pages.welcome.page import WelcomePage
+from app.gui.shell.closing import may_close
 from app.gui.shell.focus import FocusKeeper, press_by_enter
 from app.gui.shell.frame import TabList, TopBar
 from app.gui.shell.job_bar import JobBar, LogDrawer, MessageBar, next_step
@@ -198,8 +199,7 @@ class MainWindow(QMainWindow):
 
     @override
     def closeEvent(self, event: QCloseEvent) -> None:
-        is_busy = not self.desk.jobs.is_idle
-        if is_busy and self._asks_before_closing and not self._may_stop_work():
+        if self._asks_before_closing and not may_close(self, self.desk):
             event.ignore()
             return
         self._store_layout()
@@ -209,23 +209,6 @@ class MainWindow(QMainWindow):
         self.memory.store_session(None)  # only now: a kill while the work ends is one, too
         self._preload.wait()
         super().closeEvent(event)
-
-    def _may_stop_work(self) -> bool:
-        job = self.desk.jobs.running
-        box = QMessageBox(self)
-        box.setObjectName("closing")
-        box.setWindowTitle(self.tr("A job is running"))
-        title = job.title if job is not None else ""
-        box.setText(self.tr("'{title}' is still running. Stop it and close?").format(title=title))
-        box.setInformativeText(self.tr("Finished stages are kept; a moving arm is stopped."))
-        stop = box.addButton(self.tr("Stop and close"), QMessageBox.ButtonRole.AcceptRole)
-        stay = box.addButton(self.tr("Keep working"), QMessageBox.ButtonRole.RejectRole)
-        box.setDefaultButton(stay)
-        box.exec()
-        if box.clickedButton() is not stop:
-            return False
-        self.desk.arm.stop()
-        return True
 
     def _lay_out(self) -> None:
         middle = QHBoxLayout()

@@ -139,6 +139,7 @@ def _result(
         recording=fillings[0].recording if fillings else None,
         stand_in_diameter_m=plan.stand_in.particle.diameter_m if plan.stand_in.scale > 1 else None,
         is_hollow_told=is_hollow_told,
+        hollows=basin.hollow_map,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import FloatArray
+from core.imagination.hollow_map import HollowMap
 from core.imagination.recording import Recording
 
 CAPACITY_FILE = "capacity.json"
@@ -53,6 +54,7 @@ class Capacity:
             the hollow for candies is told. A few large balls leave more of a narrow one empty.
         hidden_ml: what the hollow for candies holds more if all that no view saw of it is hollow; zero if all
             was seen, and of what is no container either way.
+        hollows: for candies, seen from above; none in sessions of earlier versions.
         too_small_m: size of candies that would fall through its openings; none if half as large ones stay.
     """
 
@@ -80,6 +82,7 @@ class Capacity:
     is_hollow_told: bool = False
     hidden_ml: float = 0.0
     too_small_m: float | None = None
+    hollows: HollowMap | None = None
 
     @property
     def n_level(self) -> float:
@@ -145,15 +148,18 @@ class Capacity:
         return self.level_of(n_candies) / self.rim_height_m if self.rim_height_m > 0 else 0.0
 
     def to_table(self) -> dict[str, Any]:
-        """Return plain JSON: all but the curve and the recording."""
-        in_arrays = {"heights_m", "volumes_ml", "recording"}
+        """Return plain JSON: all but the curve, the recording and the hollows."""
+        in_arrays = {"heights_m", "volumes_ml", "recording", "hollows"}
         return {one.name: getattr(self, one.name) for one in fields(self) if one.name not in in_arrays}
 
     def save(self, folder: Path) -> None:
         """Write `capacity.json` and `capacity.npz` into an existing folder."""
         write_json(folder / CAPACITY_FILE, self.to_table())
         recorded = {} if self.recording is None else self.recording.to_arrays()
-        write_arrays(folder / _ARRAYS, heights_m=self.heights_m, volumes_ml=self.volumes_ml, **recorded)
+        seen = {} if self.hollows is None else self.hollows.to_arrays()
+        write_arrays(
+            folder / _ARRAYS, heights_m=self.heights_m, volumes_ml=self.volumes_ml, **recorded, **seen
+        )
 
     @classmethod
     def load(cls, folder: Path) -> Capacity:
@@ -167,4 +173,5 @@ class Capacity:
             table[name] = tuple(table[name])
         table["heights_m"], table["volumes_ml"] = arrays["heights_m"], arrays["volumes_ml"]
         table["recording"] = Recording.from_arrays(arrays) if "time_s" in arrays else None
+        table["hollows"] = HollowMap.from_arrays(arrays) if "hollow_pitch_m" in arrays else None
         return cls(**table)

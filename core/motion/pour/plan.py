@@ -49,7 +49,20 @@ class Segment(str, Enum):
         """As shown to the user."""
         return _LABELS.get(self, self.value)
 
+    @property
+    def is_over_the_object(self) -> bool:
+        """Whether the cup is over the object, or close to it, while it lasts."""
+        return self in _OVER_THE_OBJECT
 
+
+_OVER_THE_OBJECT = (
+    Segment.TILT,
+    Segment.LOWER,
+    Segment.POUR,
+    Segment.ROTATE_BACK,
+    Segment.RAISE,
+    Segment.TILT_BACK,
+)
 _LABELS = {
     Segment.TILT: "tilt",
     Segment.ROTATE_BACK: "rotate back",

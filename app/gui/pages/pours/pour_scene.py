@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.gui.pages.pours.results import ShownPours
+from app.gui.pages.pours.results import FillBand, ShownPours
 from app.gui.theme import GRID_PX
 from app.gui.views.labels import text_label
 from app.gui.views.scene import Scene3D
@@ -17,7 +17,7 @@ from core.geometry import FloatArray
 from core.imagination.recording import Recording
 from core.imagination.results import PourGrid
 
-GROUND, BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND = (
+GROUND, BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND, LEVEL, LEVEL_NAME = (
     "ground",
     "object",
     "cup",
@@ -27,6 +27,8 @@ GROUND, BODY, CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, AROUND = (
     "direction",
     "center",
     "around",
+    "level",
+    "level's name",
 )
 _ARROW_M = 0.07
 _GROUND_M = 0.4
@@ -98,7 +100,7 @@ class PourScene(QWidget):
         self.scene.set_ground(
             GROUND, [*box.mean(axis=0)[:2], pours.ground_m], [_GROUND_M] * 2, pours.casters_m
         )
-        for name in (CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER):
+        for name in (CUP, CANDIES, PIVOTS, PIVOT, ARROW, CENTER, LEVEL, LEVEL_NAME):
             self.scene.remove(name)
         self._bar.setVisible(grid is not None)
         if grid is None:
@@ -113,7 +115,14 @@ class PourScene(QWidget):
         footprint = pours.containability.footprint
         if footprint is not None:
             self.scene.set_label(CENTER, footprint.center_m, self.tr("Pour centre"))
+        self._show_level(pours.fill_line)
         self.scene.fit(BODY, AROUND)
+
+    def _show_level(self, level: FillBand | None) -> None:
+        if level is not None:
+            self.scene.set_prepared_mesh(LEVEL, level.band, color="accent")
+            said = self.tr("level of {n} candies").format(n=level.n_candies)
+            self.scene.set_label(LEVEL_NAME, level.label_m, said)
 
     def show_pour(self, i: int, j: int) -> None:
         """Show one pour at its end: what landed inside and what did not."""

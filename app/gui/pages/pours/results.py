@@ -11,17 +11,19 @@ import numpy as np
 from app.gui.pages.photographed import in_colors
 from app.gui.views.scene.occlusion import surface_points_m
 from app.gui.views.scene.parts import PreparedMesh, prepare_mesh
-from app.gui.views.scene.shapes import Shape
+from app.gui.views.scene.shapes import Shape, band_mesh
 from app.operations.choosing import current_motions
 from core.errors import SessionError
 from core.geometry import BoolArray, FloatArray
 from core.imagination.amount.result import Amount
+from core.imagination.fill_line import fill_line
 from core.imagination.particle_shape import particle_extents_m
 from core.imagination.recording import Recording
 from core.imagination.rendering.replay import make_replay
 from core.imagination.rendering.shapes import candy_mesh, cup_surface
 from core.imagination.results import Containability, PourChoice, PourGrid
 from core.imagination.risk.result import PourRisk
+from core.mesh import TriangleMesh
 from core.mesh_file import read_ply
 from core.motion.pour.feasibility import PourFeasibility, PourMotions
 from core.parameters.imagination import PouringParameters
@@ -34,6 +36,22 @@ if TYPE_CHECKING:
 
 
 _N_CASTERS = 15_000
+_BAND_M, _BAND_APART_M = 0.002, 0.0004
+
+
+@dataclass(frozen=True)
+class FillBand:
+    """How high an amount fills the object, as a band on its walls.
+
+    Attributes:
+        band: the band.
+        label_m: (3,) where it is named.
+        n_candies: that fill it so high, laid level.
+    """
+
+    band: PreparedMesh
+    label_m: FloatArray
+    n_candies: int
 
 
 @dataclass(frozen=True)
@@ -57,6 +75,7 @@ class ShownPours:
         body: the object.
         casters_m: (n, 3) points all over it, for its shadow.
         cup: in its own frame.
+        fill_line: how high the amount fills the object; none where that is not known.
         is_in_cell: false for an imported mesh, which no arm can reach.
         motions: which ones the cell's arm can make; none if that is not known.
         operator: what a person chose; none if nobody did.
@@ -79,6 +98,7 @@ class ShownPours:
     body: PreparedMesh
     casters_m: FloatArray
     cup: PreparedMesh
+    fill_line: FillBand | None
     is_in_cell: bool
     motions: PourMotions | None = None
     operator: OperatorChoice | None = None
@@ -191,5 +211,18 @@ def _imagined(view: SessionView, record: StageRecord, tries: StageRecord | None)
         body=in_colors(prepare_mesh(surface.vertices_m, surface.faces, is_shaded=True), surface, view),
         casters_m=surface_points_m(surface.vertices_m, surface.faces, _N_CASTERS),
         cup=prepare_mesh(cup.vertices_m, cup.faces),
+        fill_line=_fill_line(surface, view),
         is_in_cell=view.source != "mesh",
     )
+
+
+def _fill_line(surface: TriangleMesh, view: SessionView) -> FillBand | None:
+    amount, judgement = view.amount, view.judgement
+    capacity = None if judgement is None else judgement.capacity
+    if amount is None or capacity is None or capacity.hollows is None or amount.fill_height_m <= 0:
+        return None
+    line = fill_line(surface, capacity.hollows, capacity.hollows.lowest_m + amount.fill_height_m)
+    if not len(line.ends_m):
+        return None
+    band = prepare_mesh(*band_mesh(line.ends_m, line.normals, _BAND_M, _BAND_APART_M))
+    return FillBand(band, line.ends_m[line.ends_m[:, 0, 1].argmax(), 0], amount.n_total)

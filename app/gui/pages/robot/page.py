@@ -202,7 +202,8 @@ class RobotPage(BackgroundPage[_PoursKey, SessionPours]):
         if not self.isVisible():
             return
         if not is_ours or status is None:
-            self.view.show_arm(None, holds_cup=False)
+            last_seen_rad = None if arm.connected is not None else arm.last_seen_rad
+            self.view.show_arm(None, holds_cup=False, last_seen_rad=last_seen_rad)
         elif status.state is not None:
             is_under_way = self.procedure.step.is_moving or status.must_back_off
             at_rest = None if status.is_gripper_closed else False  # closed by whom, around what?

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gui.pages.cell_model import CellModel
 from app.gui.pages.layouts import lay_around
 from app.gui.pages.robot.candies import PouredCandies
 from app.gui.pages.robot.candy_layer import CandyLayer
@@ -55,6 +56,7 @@ class ArmView(QWidget):
         self._object: PreparedMesh | None = None
         self._motion: ShownMotion | None = None
         self._joints_rad: FloatArray | None = None
+        self._last_seen_rad: FloatArray | None = None
         self._holds_cup: bool | None = False
         self._T_flange_cup: FloatArray | None = None
         self._drawn: tuple[FloatArray, bool | None] | None = None
@@ -131,18 +133,25 @@ class ArmView(QWidget):
             casters_m = np.empty((0, 3)) if self._object is None else self._object.vertices_m
             self._cell.model.draw_platform_top(self.scene, casters_m)
 
-    def show_arm(self, joints_rad: FloatArray | None, holds_cup: bool | None) -> None:
+    def show_arm(
+        self,
+        joints_rad: FloatArray | None,
+        holds_cup: bool | None,
+        last_seen_rad: FloatArray | None = None,
+    ) -> None:
         """Show where the arm is now.
 
         Args:
-            joints_rad: (6,); none: it is not connected, and drawn at its home.
+            joints_rad: (6,); none: it is not connected.
             holds_cup: whether the cup is in the hand, not at its station; none: nobody knows.
+            last_seen_rad: (6,) where it is drawn while it is not connected; none: at home.
         """
         was_connected, is_connected = self._joints_rad is not None, joints_rad is not None
-        self._joints_rad, self._holds_cup = joints_rad, holds_cup
+        is_elsewhere = not is_connected and last_seen_rad is not self._last_seen_rad
+        self._joints_rad, self._holds_cup, self._last_seen_rad = joints_rad, holds_cup, last_seen_rad
         if self._cell is None:
             return
-        if was_connected != is_connected:
+        if was_connected != is_connected or is_elsewhere:
             self._set_arm(is_connected)
             self._show_caption()
             self._place_cup()
@@ -253,9 +262,8 @@ class ArmView(QWidget):
         """An arm of which nobody knows where it is, is see-through."""
         assert self._cell is not None, "called when there is a cell"
         model = self._cell.model
-        joints_rad = model.home_rad if self._joints_rad is None else self._joints_rad
         looks: ArmLooks = "solid" if is_connected else "ghost"
-        self.scene.set_arm("arm", model.arm, joints_rad, tools=model.tools, looks=looks)
+        self.scene.set_arm("arm", model.arm, self._drawn_rad(model), tools=model.tools, looks=looks)
         self._show_collision_shape()
         self._drawn = None
 
@@ -265,8 +273,14 @@ class ArmView(QWidget):
             self.scene.remove(_COLLISION)
             return
         model = self._cell.model
-        joints_rad = model.home_rad if self._joints_rad is None else self._joints_rad
-        self.scene.set_arm(_COLLISION, model.arm, joints_rad, tools=model.tools, looks="collision")
+        self.scene.set_arm(
+            _COLLISION, model.arm, self._drawn_rad(model), tools=model.tools, looks="collision"
+        )
+
+    def _drawn_rad(self, model: CellModel) -> FloatArray:
+        """Where it is, else where it was last seen, else its home."""
+        known = (self._joints_rad, self._last_seen_rad, model.home_rad)
+        return next(joints_rad for joints_rad in known if joints_rad is not None)
 
     def _place_cup(self) -> None:
         """In the hand or at its station; away if nobody knows where it is."""
@@ -324,6 +338,8 @@ class ArmView(QWidget):
     def _show_caption(self) -> None:
         if self._joints_rad is None:
             said = self.tr("Not connected: the arm is drawn at its home position.")
+            if self._last_seen_rad is not None:
+                said = self.tr("Not connected: the arm is drawn where it was last seen.")
         elif self._motion is None:
             said = self.tr("The arm as it is now.")
         elif self._is_following:

@@ -17,11 +17,14 @@ from app.gui.theme import GRID_PX
 from app.gui.views.frustum_legend import FrustumLegend
 from app.gui.views.labels import text_label
 from app.gui.views.scene import Frustum, PreparedMesh, Scene3D
+from app.gui.views.scene.arm import ArmLooks
 from app.gui.views.state_mark import State, StateMark
 from app.gui.views.thumbnails import ThumbnailGrid
 from app.jobs.scan_events import ViewProgress
+from core.geometry import FloatArray
 from core.scan.model import CropBox
 
+_AT_HOME_RAD = 0.01
 _ARM, _BOX, _OBJECT, _REACH, _TABLE, _VIEWS = "arm", "box", "object", "reach", "table", "views"
 _GROUND_SIZES = 1.6
 """Half the side of an imported mesh's ground, as a share of the mesh's diagonal."""
@@ -128,6 +131,8 @@ class ScanView(QWidget):
         self._box: CropBox | None = None
         self._placed: list[int] = []
         self._is_alone = False
+        self._joints_rad: FloatArray | None = None
+        self._is_connected = False
         self._casters_m: npt.NDArray[np.float32] = np.empty((0, 3), dtype=np.float32)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -136,6 +141,7 @@ class ScanView(QWidget):
     def show_cell(self, cell: ShownCell) -> None:
         """Show another cell, its arm at rest."""
         self._cell = cell
+        self._joints_rad, self._is_connected = None, False
         if not self._is_alone:
             self._draw_cell(cell)
 
@@ -188,11 +194,34 @@ class ScanView(QWidget):
         self.legend.show_states(frustum.state for frustum in frusta)
         self.legend.raise_()
 
-    def bend(self, joints_rad: npt.ArrayLike | None) -> None:
-        """Show the arm at joint angles (6,); none: at rest."""
+    def show_arm(self, joints_rad: FloatArray | None, *, is_connected: bool) -> None:
+        """Show the arm as it is now, or see-through where it was last seen, unless it had come home.
+
+        Args:
+            joints_rad: (6,) as it reported them last; none: it is drawn at home.
+            is_connected: whether it reports them now.
+        """
+        former, self._joints_rad, self._is_connected = self.arm_looks, joints_rad, is_connected
         cell = self._cell
-        if cell is not None and cell.has_arm and not self._is_alone:
-            self.scene.set_joints(_ARM, cell.model.home_rad if joints_rad is None else joints_rad)
+        if cell is None or not cell.has_arm or self._is_alone:
+            return
+        if self.arm_looks == former and joints_rad is not None:
+            self.scene.set_joints(_ARM, joints_rad)
+        else:
+            self._draw_arm(cell)
+
+    @property
+    def arm_looks(self) -> ArmLooks:
+        """How the arm is drawn: see-through while nobody knows where it is now."""
+        if self._is_connected or self._joints_rad is None or self._cell is None:
+            return "solid"
+        is_home = np.allclose(self._joints_rad, self._cell.model.home_rad, atol=_AT_HOME_RAD)
+        return "solid" if is_home else "ghost"
+
+    def _draw_arm(self, cell: ShownCell) -> None:
+        model = cell.model
+        joints_rad = model.home_rad if self._joints_rad is None else self._joints_rad
+        self.scene.set_arm(_ARM, model.arm, joints_rad, tools=model.tools, looks=self.arm_looks)
 
     def _draw_cell(self, cell: ShownCell) -> None:
         scene, model = self.scene, cell.model
@@ -202,7 +231,7 @@ class ScanView(QWidget):
         model.draw_platform_top(scene, self._casters_m)
         self._draw_box(cell)
         if cell.has_arm:
-            scene.set_arm(_ARM, model.arm, model.home_rad, tools=model.tools)
+            self._draw_arm(cell)
             # Two points nobody sees: with them in view, the arm is, wherever a scan takes it.
             scene.set_points(_REACH, cell.reach_m, color="scene", size_px=1)
         scene.fit(_TABLE, _BOX, _VIEWS, _REACH)

@@ -156,12 +156,11 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             self.left.view.show_mesh(mesh)
 
     def _show_arm(self) -> None:
-        status, is_there = self.desk.arm.status, self.desk.arm.connected is not None
-        state = status.state if status is not None else None
-        if state is not None or not is_there:
-            self.left.view.bend(None if state is None else state.joints_rad)
+        arm, is_there = self.desk.arm, self.desk.arm.connected is not None
+        self.left.view.show_arm(arm.last_seen_rad, is_connected=is_there)
         if is_there is not self._has_arm:
             self._has_arm = is_there
+            self.side.choice.ask_clearance(arm.was_stopped)
             self.update_actions()
 
     def _own_views(self) -> None:
@@ -289,6 +288,7 @@ class ScanPage(BackgroundPage[ScanKey, ScanContents]):
             question=self._question,
             is_checking=running is not None and running.page == self.KEY,
             is_arm_taken=desk.jobs.is_idle and connected is not None and not connected.is_simulated,
+            was_stopped=desk.arm.was_stopped,
             is_stale=desk.workspace.stages.get("quality") is Freshness.STALE,
             is_simulated=desk.cell.is_simulated,
             proposal=self._proposal,

@@ -180,7 +180,7 @@ class ObjectChoice(QWidget):
         self._is_clear.setToolTip(self.tr("The arm moves as soon as the scan begins"))
         self._source = _DEFAULT
         self._kind = ""
-        self._moves = False
+        self._moves = self._was_stopped = False
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(GRID_PX // 2)
@@ -199,7 +199,12 @@ class ObjectChoice(QWidget):
     @property
     def is_ready(self) -> bool:
         """Whether a scan may begin, as far as the object and the area go."""
-        return bool(self._kind) and (not self._moves or self._is_clear.isChecked())
+        return bool(self._kind) and (not self._asks or self._is_clear.isChecked())
+
+    @property
+    def _asks(self) -> bool:
+        """A rehearsal asks after a STOP alone."""
+        return self._moves or (self._was_stopped and self._kind == "simulated")
 
     def set_names(self, names: tuple[str, ...]) -> None:
         """Offer the built-in objects."""
@@ -223,7 +228,7 @@ class ObjectChoice(QWidget):
         }
         say(self._said, texts[self._kind])
         self._combo.setVisible(self._kind == "simulated")
-        self._is_clear.setVisible(self._moves)
+        self._is_clear.setVisible(self._asks)
 
     def choose(self, source: str) -> None:
         """Choose an object by its name, or a mesh by its file."""
@@ -248,6 +253,11 @@ class ObjectChoice(QWidget):
     def forget_clearance(self) -> None:
         """Before each scan of a real cell, ask again whether the area is clear."""
         self._is_clear.setChecked(False)
+
+    def ask_clearance(self, was_stopped: bool) -> None:
+        """After a STOP ask in every cell whether the area is clear, until an arm is connected again."""
+        self._was_stopped = was_stopped
+        self._is_clear.setVisible(self._asks)
 
     def _pick(self, index: int) -> None:
         picked = self._combo.itemData(index)

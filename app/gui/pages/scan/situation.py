@@ -47,6 +47,7 @@ class Situation:
         question: what it waits for, in a sentence; empty if somebody paused it.
         is_checking: whether another job of this page is running.
         is_arm_taken: whether the process that pours holds the real arm.
+        was_stopped: whether STOP was pressed, and no arm has been connected since.
         is_stale: whether the verdict is from before something was changed.
         is_simulated: whether nothing real moves.
         proposal: of further views, once there is one.
@@ -64,6 +65,7 @@ class Situation:
     question: str
     is_checking: bool
     is_arm_taken: bool
+    was_stopped: bool
     is_stale: bool
     is_simulated: bool
     proposal: Proposal | None
@@ -282,6 +284,13 @@ def remarks_of(now: Situation) -> tuple[str, str]:
     if now.is_arm_taken and not now.is_simulated:
         said = translate(
             "ScanPage", "The arm is connected for pouring: disconnect it on the Robot page first."
+        )
+        return said, ""
+    if now.was_stopped and now.is_idle and not now.is_ready:
+        said = translate(
+            "ScanPage",
+            "STOP was pressed: the arm is drawn see-through where it was last seen. Go there, and see that "
+            "nothing is in its way.",
         )
         return said, ""
     if now.is_scanning or not now.needs_new_session:

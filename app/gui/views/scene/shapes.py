@@ -134,3 +134,19 @@ def _axes_along(direction: FloatArray) -> FloatArray:
     x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
     x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
+
+
+def band_mesh(ends_m: FloatArray, normals: FloatArray, width_m: float, apart_m: float) -> Shape:
+    """An upright band along pieces of a level line, in front of what the line lies on.
+
+    Args:
+        ends_m: (K, 2, 3) of the pieces.
+        normals: (K, 3) level unit vectors towards where it is seen from.
+        width_m: from its lower to its upper edge.
+        apart_m: from what it lies on, so that both are told apart.
+    """
+    middle = ends_m + apart_m * normals[:, None]
+    half = np.array([0.0, 0.0, width_m / 2])
+    corners = np.concatenate([middle - half, middle[:, ::-1] + half], axis=1)
+    faces = np.array([[0, 1, 2], [0, 2, 3]]) + 4 * np.arange(len(ends_m))[:, None, None]
+    return corners.reshape(-1, 3), faces.reshape(-1, 3)

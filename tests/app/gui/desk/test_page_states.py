@@ -35,6 +35,21 @@ def test_running_and_failed_pages_are_marked(desk, mug_session):
     assert states["reconstruction"].word == "failed"
 
 
+def test_a_scan_that_failed_its_check_is_marked_on_every_page(desk, mug_session):
+    """The mug's scan, as if its views had disagreed."""
+    path = mug_session / "quality" / "quality.json"
+    reasons = ["scan again: the views do not agree."]
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"verdict": "scan again", "reasons": reasons}))
+    _of_this_size(mug_session / "quality", path)
+    desk.workspace.open(mug_session)
+    states = page_states(desk.workspace, None)
+    assert states["scan"] == PageState("failed", "scan again")
+    for shown in states:
+        step = next_step(states, True, shown)
+        assert step is not None
+        assert (step.page, step.words) == ("scan", "Next: scan the object again")
+
+
 def test_a_verdict_is_told_while_the_pours_are_still_imagined(desk, mug_session):
     desk.workspace.open(mug_session)
     shutil.rmtree(mug_session / "pouring")

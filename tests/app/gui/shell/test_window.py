@@ -21,9 +21,11 @@ from app.gui.shell.job_bar import MessageBar
 from app.gui.shell.menus import Menus, ShortcutOverview, actions_with_keys
 from app.gui.shell.window import MainWindow
 from app.gui.theme import DARK, LIGHT, THEMES, apply_theme, theme_of
+from app.jobs.arm_events import ArmConnected, ArmStatus
 from app.jobs.messages import FailureKind
 from app.jobs.session_work import SessionWork
 from app.library.session_folder import remembered_parameters
+from core.motion.pour.plan import Segment
 from tests.awake import within
 
 
@@ -115,6 +117,47 @@ def test_closing_while_work_runs_asks_and_leaves_no_process(
         with within(5.0), qtbot.waitSignal(desk.jobs.failed) as ended:
             qtbot.mouseClick(_button(window, "cancel"), Qt.MouseButton.LeftButton)
         assert ended.args[1].kind is FailureKind.CANCELLED
+
+
+@pytest.mark.parametrize(
+    ("stopped_in", "is_closed", "said"),
+    [
+        (Segment.POUR, True, "holds the cup over the object; it was stopped in “pour”"),
+        (Segment.CARRY, True, "holds the cup away from its station; it was stopped in “carry”"),
+        (Segment.GRASP, False, "stands where it was stopped in “grasp”, its gripper open"),
+        (None, True, "gripper of the UR5 is closed: it may hold the cup"),
+    ],
+)
+def test_closing_says_what_the_arm_holds_and_where(window, qtbot, stopped_in, is_closed, said):
+    desk = window.desk
+    desk.arm_host.open()
+    desk.arm.handle(ArmConnected("UR5", None, False, pid=desk.arm_host.pid))
+    desk.arm.handle(ArmStatus(None, is_closed, "", stopped_in=stopped_in))
+    asked = []
+
+    def press(wanted):
+        box = window.findChild(QMessageBox, "closing")
+        asked.append((box.text(), box.informativeText()))
+        assert box.defaultButton().text() == "Stay"
+        next(button for button in box.buttons() if button.text() == wanted).click()
+        box.setObjectName("answered")
+
+    QTimer.singleShot(200, lambda: press("Stay"))
+    assert not window.close()
+    assert window.isVisible()
+    QTimer.singleShot(200, lambda: press("Close anyway"))
+    assert window.close()
+    assert said in asked[0][0]
+    assert "stays like that" in asked[0][1]
+    assert asked[0] == asked[1]
+
+
+def test_an_arm_at_home_that_holds_nothing_does_not_keep_the_window_open(window, qtbot):
+    desk = window.desk
+    desk.arm_host.open()
+    desk.arm.handle(ArmConnected("UR5", None, False, pid=desk.arm_host.pid))
+    desk.arm.handle(ArmStatus(None, False, ""))
+    assert window.close()
 
 
 def test_stop_works_by_button_and_by_key_whatever_has_the_focus(window, qtbot):

@@ -48,6 +48,16 @@ def test_the_replay_ends_as_it_was_counted(mug_session, cell):
         assert abs(int(pours.landed(i, j).sum()) - counted) <= 1, "positions are kept in steps of 0.1 mm"
 
 
+def test_the_level_of_the_amount_is_a_band_in_the_object(mug_session, cell):
+    pours = load_pours(PoursKey(mug_session, cell, None))
+    level = pours.fill_line
+    assert level is not None
+    assert level.n_candies == pours.amount.n_total
+    heights_m = level.band.vertices_m[:, 2] - pours.body.vertices_m[:, 2].min()
+    assert np.ptp(heights_m) < 0.002
+    assert pours.amount.fill_height_m < heights_m.mean() < pours.amount.fill_height_m + 0.02, "floor and base"
+
+
 def test_motions_for_another_cell_do_not_count(mug_session, cell):
     moved = cell.model_copy(update={"robot": cell.robot.model_copy(update={"address": "10.0.0.7"})})
     assert current_motions(Session.open(mug_session), cell) is not None

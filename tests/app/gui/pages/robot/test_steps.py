@@ -6,10 +6,11 @@ import pytest
 
 from app.gui.pages.robot.steps import Activity, Situation, Step
 from app.jobs.arm_events import ArmStatus
+from core.motion.pour.plan import Segment
 
 READY = ArmStatus(None, False, "")
-STOPPED = ArmStatus(None, True, "It was stopped.", must_back_off=True)
-ON_ITS_WAY = ArmStatus(None, True, "", must_back_off=True)
+STOPPED = ArmStatus(None, True, "It was stopped.", stopped_in=Segment.CARRY)
+ON_ITS_WAY = ArmStatus(None, True, "", stopped_in=Segment.CARRY)
 
 
 def step(activity=Activity.NONE, status=READY, **facts):

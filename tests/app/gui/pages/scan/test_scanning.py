@@ -8,7 +8,7 @@ import signal
 import pytest
 from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDragLeaveEvent, QDropEvent
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QCheckBox, QWidget
 
 from app.jobs.arm_events import ArmStatus
 from hardware.simulation.objects import builtin_object
@@ -63,6 +63,35 @@ def test_a_scan_is_watched_killed_and_tried_again(qtbot, desk, small_cell_page, 
     assert desk.workspace.is_fresh("quality")
     assert desk.workspace.folder == folder
     assert primary(page).text() == "Scan again"
+
+
+def test_after_a_stop_the_arm_is_seen_through_where_it_was_and_going_on_asks(qtbot, desk, small_cell_page):
+    page, view = small_cell_page, small_cell_page.left.view
+    clear = page.findChild(QCheckBox, "area_clear")
+    assert not clear.isVisible()
+    qtbot.mouseClick(primary(page), Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: n_taken(page) >= 1)
+    assert view.arm_looks == "solid"
+    desk.arm.stop()
+    settle(qtbot, desk, page)
+    stopped_rad = desk.arm.last_seen_rad.copy()
+    assert abs(stopped_rad - view._cell.model.home_rad).max() > 0.1, "away from home"
+    assert view.arm_looks == "ghost"
+    assert "drawn see-through where it was last seen" in text(page, "obstacle")
+    assert primary(page).text() == "Continue scan"
+    assert not primary(page).isEnabled()
+    assert clear.isVisible()
+
+    qtbot.mouseClick(clear, Qt.MouseButton.LeftButton, pos=QPoint(8, clear.height() // 2))
+    assert text(page, "obstacle") == ""
+    qtbot.mouseClick(primary(page), Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: desk.arm.connected is not None)
+    assert view.arm_looks == "solid"
+    assert not clear.isVisible()
+    qtbot.waitUntil(lambda: n_taken(page) == N_VIEWS)
+    settle(qtbot, desk, page)
+    assert view.arm_looks == "ghost", "it stays where it took its last view, and nobody watches it any more"
+    assert not clear.isVisible()
 
 
 def test_a_view_is_taken_again_and_judged_anew(qtbot, desk, make_page, mug_session):
