@@ -17,8 +17,8 @@ def draw_objects(
     connection: Connection, objects: tuple[LabelledObject, ...], size_px: tuple[int, int]
 ) -> None:
     """Send a `DrawnPicture` of each object; one that cannot be read is left out: judging it says why."""
-    from app.library.shading import shaded_picture
     from core.mesh_file import read_mesh
+    from core.mesh_picture import shaded_picture
 
     with suppress(OSError):  # nobody listens any more
         for one in objects:

@@ -81,8 +81,8 @@ def _draw(source: Path) -> Image:
     from PIL import Image
 
     if source.suffix in (".ply", ".npz"):
-        from app.library.shading import shaded_picture
         from core.mesh_file import read_ply
+        from core.mesh_picture import shaded_picture
         from core.reconstruction.colors import ModelColors
 
         if source.suffix == ".ply":

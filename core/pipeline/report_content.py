@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from io import BytesIO
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from core.files import read_content
 from core.imagination.imagination import Imagination
@@ -19,7 +20,10 @@ from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import pour_runs
 from core.stages import STAGE_NAMES
 
-_THUMBNAIL_PX = (240, 180)
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+_THUMBNAIL_PX, _MODEL_PX = (240, 180), (640, 480)
 _CAPTIONS = {
     "drop_1_start.png": "Start",
     "drop_2_falling.png": "Falling",
@@ -67,6 +71,7 @@ def gather(
         choice=imagination.choice,
         risk=imagination.risk if motions is None or motions.risk is None else motions.risk,
         paper_choice=imagination.paper_choice,
+        model_pictures=_model_pictures(session, surface),
         scan_pictures=_thumbnails(session.path / "scan" / "rgbd"),
         pictures={caption: content for caption, content in named.items() if caption not in films},
         films={caption: content for caption, content in named.items() if caption in films},
@@ -77,6 +82,31 @@ def gather(
         runs=tuple(pour_runs(session.path)),
         operator=read_operator_choice(session.path, made["pouring"].digest),
     )
+
+
+def _model_pictures(session: Session, surface: TriangleMesh) -> dict[str, Media]:
+    """The surface from both sides, if the session has its colours."""
+    from core.mesh_picture import shaded_picture  # both bring Pillow along
+    from core.reconstruction.colors import ModelColors
+
+    if session.record("colors") is None:
+        return {}
+    rgb = ModelColors.load(session.folder("colors")).rgb
+    if len(rgb) != len(surface.vertices_m):
+        return {}
+    seen = {"The model": surface, "From behind": _turned(surface)}
+    return {caption: _jpeg(shaded_picture(mesh, _MODEL_PX, rgb=rgb)) for caption, mesh in seen.items()}
+
+
+def _turned(mesh: TriangleMesh) -> TriangleMesh:
+    """Half around z."""
+    return TriangleMesh(mesh.vertices_m * [-1.0, -1.0, 1.0], mesh.faces)
+
+
+def _jpeg(picture: Image) -> bytes:
+    buffer = BytesIO()
+    picture.save(buffer, "JPEG", quality=90)
+    return buffer.getvalue()
 
 
 def _thumbnails(folder: Path) -> dict[str, Media]:

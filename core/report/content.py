@@ -47,6 +47,7 @@ class ReportContent:
         choice: None when there is no pour to choose.
         risk: of the pours; None when no tries were made.
         paper_choice: the choice by the paper's rule.
+        model_pictures: caption to picture of the surface in its photographed colours; empty without these.
         scan_pictures: caption to picture, small; one a view.
         pictures: caption to picture; wide ones get a row of their own.
         films: caption to film.
@@ -74,6 +75,7 @@ class ReportContent:
     choice: PourChoice | None = None
     risk: PourRisk | None = None
     paper_choice: PourChoice | None = None
+    model_pictures: Mapping[str, Media] = field(default_factory=dict)
     scan_pictures: Mapping[str, Media] = field(default_factory=dict)
     pictures: Mapping[str, Media] = field(default_factory=dict)
     films: Mapping[str, Media] = field(default_factory=dict)

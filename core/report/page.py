@@ -89,6 +89,7 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         "footprint_plot": _both(footprint_plot(found), footprint_plot(found, dark=True)),
         "pictures": embed_pictures(content.pictures),
         "films": embed_films(content.films),
+        "model_pictures": embed_pictures(content.model_pictures),
         "scan_pictures": embed_pictures(content.scan_pictures),
         "object_facts": object_facts(content.surface, content.reconstruction),
         "parameter_rows": parameter_rows(content.parameters, content.preset),

@@ -330,7 +330,7 @@ class _Work:
 
     def picture(self, parameters: Parameters, found: Containability) -> bytes:
         """Draw the object as it is known, with the candies that stayed."""
-        from app.library.shading import shaded_picture
+        from core.mesh_picture import shaded_picture
 
         at_end = found.recording.positions_m[-1][found.retained]
         radius_m = parameters.particle.diameter_m / 2

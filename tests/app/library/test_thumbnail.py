@@ -3,13 +3,13 @@ import pytest
 from PIL import Image
 
 from app.library.session_folder import THUMBNAIL_FILE
-from app.library.shading import shaded_picture
 from app.library.summary import summarize
 from app.library.thumbnail import SIZE_PX, current_thumbnail, make_thumbnail
 from core.errors import SessionError
 from core.imagination.rendering.pictures import BAR_PX
 from core.mesh import TriangleMesh
 from core.mesh_file import read_ply
+from core.mesh_picture import shaded_picture
 from core.session import Session
 
 

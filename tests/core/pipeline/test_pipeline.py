@@ -106,7 +106,9 @@ def renewed(before, after):
 @pytest.mark.system
 def test_only_what_a_parameter_touches_runs_again(session, pool):
     path = pipeline_of(session, pool).report()
-    assert "Open container" in path.read_text(encoding="utf-8")
+    written = path.read_text(encoding="utf-8")
+    assert "Open container" in written
+    assert "From behind" in written, "the model in its photographed colours"
     first = created(session)
     assert list(first) == list(STAGES)
 

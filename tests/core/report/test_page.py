@@ -73,6 +73,13 @@ def test_the_verdict_and_the_choice_come_first(full_content: ReportContent) -> N
     assert "20 November 2026, 14:03 UTC" in text
 
 
+def test_the_model_is_shown_with_the_facts_of_the_object(full_content: ReportContent) -> None:
+    page = read(full_content)
+    seen = read(replace(full_content, model_pictures={"From behind": b"no picture"}))
+    assert "From behind" not in page.text
+    assert page.text.index("Object") < seen.text.index("From behind") < seen.text.index("Agreement")
+
+
 def test_the_page_needs_nothing_else(full_content: ReportContent, tmp_path: Path) -> None:
     film = tmp_path / "drop.mp4"
     film.write_bytes(b"\x00\x00\x00\x18ftypmp42")

@@ -45,7 +45,7 @@ def shaded_picture(
     to_picture = np.column_stack([right, -up])
     fit = _Fit.of(mesh.vertices_m @ to_picture, width, height)
     corners = fit.px(mesh.vertices_m @ to_picture)[mesh.faces]
-    normals = _normals(mesh)
+    normals = _normals(mesh) if rgb is None else _smooth_normals(mesh)
     brightness = 0.35 + 0.65 * np.abs(normals @ (_TO_LIGHT / np.linalg.norm(_TO_LIGHT)))
     body = _BODY if rgb is None else _PHOTO_GAIN * rgb[mesh.faces].mean(axis=1)
     colors = np.minimum(brightness[:, None] * body, 255).astype(int)
@@ -102,3 +102,13 @@ def _normals(mesh: TriangleMesh) -> FloatArray:
     normals: FloatArray = np.cross(b - a, c - a)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
     return normals
+
+
+def _smooth_normals(mesh: TriangleMesh) -> FloatArray:
+    """(F, 3) of the corners' surroundings: a scan's faces are small, and rough by the camera's noise."""
+    normals, at_vertices = _normals(mesh), np.zeros_like(mesh.vertices_m)
+    for corner in range(3):
+        np.add.at(at_vertices, mesh.faces[:, corner], normals)
+    smooth: FloatArray = at_vertices[mesh.faces].sum(axis=1)
+    smooth /= np.maximum(np.linalg.norm(smooth, axis=1, keepdims=True), 1e-30)
+    return smooth
