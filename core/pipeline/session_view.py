@@ -24,7 +24,7 @@ from core.imagination.verdict import Verdict
 from core.motion.pour.feasibility import MOTION_FILE, PourMotions
 from core.parameters import Parameters, apply_settings
 from core.pipeline.freshness import finished_records
-from core.quality.measures import FACTS_FILE
+from core.quality.verdict_words import FACTS_FILE
 from core.session import Session, StageRecord
 from core.session.operator_choice import OperatorChoice, damaged_choice, read_operator_choice
 from core.stages import MESH, recorded_settings
@@ -119,7 +119,7 @@ class SessionView:
 
     @cached_property
     def scan_verdict(self) -> str:
-        """How good the scan is, one of `core.quality.measures.VERDICTS`; empty if it was not checked."""
+        """How good the scan is, one of `core.quality.verdict_words.VERDICTS`; empty if it was not checked."""
         if "quality" not in self.records:
             return ""
         path = self._path("quality") / FACTS_FILE

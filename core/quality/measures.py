@@ -10,11 +10,9 @@ import numpy as np
 from core.errors import Remedy, SessionError
 from core.files import read_arrays, read_json, write_arrays, write_json
 from core.geometry import FloatArray, IntArray
+from core.quality.verdict_words import FACTS_FILE
 from core.quality.view_quality import ViewQuality
 
-GOOD, USABLE, AGAIN = "good", "usable", "scan again"
-VERDICTS = (GOOD, USABLE, AGAIN)
-FACTS_FILE = "quality.json"
 ARRAYS_FILE = "quality.npz"
 FEWEST_TABLES = 3
 _CAVITY_NUMBERS = ("area_m2", "volume_ml", "depth_m", "width_m")

@@ -14,16 +14,8 @@ import numpy as np
 from core.geometry import BoolArray, FloatArray, IntArray, invert_pose, transform_points
 from core.mesh import TriangleMesh
 from core.quality.cavity import find_hidden_cavity
-from core.quality.measures import (
-    AGAIN,
-    GOOD,
-    USABLE,
-    VERDICTS,
-    HiddenCavity,
-    ScanQuality,
-    residual_m,
-    table_sd_m,
-)
+from core.quality.measures import HiddenCavity, ScanQuality, residual_m, table_sd_m
+from core.quality.verdict_words import AGAIN, GOOD, USABLE, VERDICTS
 from core.quality.view_quality import ModelResiduals, ViewQuality, check_view
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.tsdf import TsdfVolume

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from app.gui.views.state_mark import State
 from core.pipeline.freshness import Freshness
 from core.pipeline.session_view import SessionView
-from core.quality.measures import AGAIN
+from core.quality.verdict_words import AGAIN
 
 if TYPE_CHECKING:
     from app.gui.desk.workspace import Workspace
