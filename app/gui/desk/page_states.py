@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from app.gui.views.state_mark import State
+from core.errors import SessionError
 from core.pipeline.freshness import Freshness
 from core.pipeline.session_view import SessionView
 from core.quality.verdict_words import AGAIN
@@ -41,15 +42,23 @@ def page_states(workspace: Workspace, running_page: str | None) -> dict[str, Pag
         workspace: the open session.
         running_page: the page of the running job.
     """
-    states = {"scan": _scan(workspace), "robot": _robot(workspace)}
-    for page, stages in STAGES_OF_PAGE.items():
-        states[page] = PageState(_word(workspace, stages), _figure(workspace, page))
+    states = {page: _read(workspace, page) for page in ("scan", *STAGES_OF_PAGE, "robot")}
     if running_page in states:
         before = states[running_page]
         # What stages have found is told while those after them run; views and candies are those of before.
         is_found = running_page in STAGES_OF_PAGE and before.word == "fresh"
         states[running_page] = PageState("running", before.figure if is_found else "")
     return states
+
+
+def _read(workspace: Workspace, page: str) -> PageState:
+    """What the session's files say; the page itself tells what is wrong with them."""
+    try:
+        if page in STAGES_OF_PAGE:
+            return PageState(_word(workspace, STAGES_OF_PAGE[page]), _figure(workspace, page))
+        return _scan(workspace) if page == "scan" else _robot(workspace)
+    except SessionError:
+        return PageState("failed", workspace.tr("damaged"))
 
 
 def with_failure(states: Mapping[str, PageState], page: str | None) -> dict[str, PageState]:

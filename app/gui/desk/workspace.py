@@ -9,10 +9,10 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from app.library.session_folder import remembered_parameters, rename_session
 from app.operations.session import SessionTask
-from core.errors import InputError
+from core.errors import InputError, SessionError
 from core.parameters import Parameters, load_preset
 from core.pipeline.freshness import Freshness, finished_records, freshness
-from core.pipeline.session_view import SessionView
+from core.pipeline.session_view import PoursFacts, SessionView, VerdictFacts
 from core.session import Session, StageRecord
 from core.session.pour_runs import PourRun, pour_runs
 from core.stages import GIVEN, MESH, STAGE_NAMES, stages_before
@@ -143,16 +143,30 @@ class Workspace(QObject):
     @property
     def is_container(self) -> bool | None:
         """The verdict on the object; none if there is none that is up to date."""
-        if self.view is None or not self.is_fresh("judgement"):
-            return None
-        verdict = self.view.verdict
+        verdict = self._verdict if self.is_fresh("judgement") else None
         return None if verdict is None else verdict.is_open_container
 
     @property
     def is_undecided(self) -> bool:
         """Whether the verdict, if it is up to date, depends on what no view saw."""
-        verdict = None if self.view is None else self.view.verdict
+        verdict = self._verdict
         return self.is_container is False and verdict is not None and verdict.is_undecided
+
+    @property
+    def pours(self) -> PoursFacts | None:
+        """The imagined pours in numbers; none without them, or where their files are damaged."""
+        try:
+            return None if self.view is None else self.view.pours
+        except SessionError:  # the page that shows them says so
+            return None
+
+    @property
+    def _verdict(self) -> VerdictFacts | None:
+        """None also where its files are damaged."""
+        try:
+            return None if self.view is None else self.view.verdict
+        except SessionError:  # the page that shows it says so
+            return None
 
     def edit(self, parameters: Parameters, text: str) -> None:
         """Use other parameters from now on; `text` names the change for the undo menu."""

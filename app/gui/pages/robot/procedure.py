@@ -109,7 +109,7 @@ class PourProcedure(QObject):
         session, n_pour = workspace.session, workspace.parameters.pouring.n_pour
         if session is None:
             return Cup(1, 1, n_pour, None)
-        pours = None if workspace.view is None else workspace.view.pours
+        pours = workspace.pours
         cups = (n_pour,) if pours is None else pours.n_per_cup
         if self.run is not None:
             return cup_of_run(session.path, self.run, cups)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import shutil
 
+import pytest
+
 from app.gui.desk.page_states import PageState, page_states, with_failure
 from app.gui.pages.robot.steps import missing_for_a_pour
 from app.gui.shell.job_bar import next_step
@@ -48,6 +50,27 @@ def test_a_scan_that_failed_its_check_is_marked_on_every_page(desk, mug_session)
         step = next_step(states, True, shown)
         assert step is not None
         assert (step.page, step.words) == ("scan", "Next: scan the object again")
+
+
+@pytest.mark.parametrize(
+    ("stage", "file", "pages"),
+    [
+        ("quality", "quality.json", {"scan"}),
+        ("containability", "containability.json", {"imagination"}),
+        ("judgement", "judgement.json", {"imagination"}),
+        ("pouring", "pours.json", {"pours"}),
+    ],
+)
+def test_a_page_whose_files_are_damaged_is_marked_and_the_others_are_told(
+    desk, mug_session, stage, file, pages
+):
+    """As long as it was, so that the stage is taken for whole."""
+    path = mug_session / stage / file
+    path.write_text("{" + " " * (path.stat().st_size - 2) + "}")
+    desk.workspace.open(mug_session)
+    states = page_states(desk.workspace, None)
+    assert {page for page, state in states.items() if state == PageState("failed", "damaged")} == pages
+    assert next_step(states, desk.workspace.is_container, "scan", desk.workspace.is_undecided) is not None
 
 
 def test_a_verdict_is_told_while_the_pours_are_still_imagined(desk, mug_session):

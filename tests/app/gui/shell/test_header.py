@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import QEvent, QObject
 
 from app.gui.shell.frame import Chip
-from app.jobs.arm_events import ArmStatus
+from app.jobs.arm_events import ArmConnected, ArmDisconnected, ArmStatus
 
 
 def test_an_arm_that_moves_is_said_to_move(window):
@@ -21,6 +21,21 @@ def test_an_arm_that_moves_is_said_to_move(window):
         assert chip.text == said
         window.desk.cell.changed.emit()
         assert chip.text == said, "shown again for another reason"
+
+
+def test_a_connected_arm_stays_connected_whatever_session_is_opened(window, tmp_path, mug_session):
+    arm, chip = window.desk.arm, window.findChild(Chip, "robot_chip")
+    assert chip.text == "robot not connected"
+    window.desk.arm_host.open()
+    arm.handle(ArmConnected("UR5", None, False, pid=window.desk.arm_host.pid))
+    arm.handle(ArmStatus(None, False, ""))
+    for folder in (tmp_path / "new", mug_session):
+        assert window.desk.open_session(folder)
+        assert chip.text == "robot ready"
+    window.desk.workspace.close()
+    assert chip.text == "robot ready"
+    arm.handle(ArmDisconnected())
+    assert chip.text == "robot not connected"
 
 
 def test_an_arm_that_stands_draws_nothing_again(window, qtbot):

@@ -82,6 +82,13 @@ def nested_scrolling(window: MainWindow) -> list[str]:
     ]
 
 
+def primary_buttons(window: MainWindow) -> list[str]:
+    """Name every visible button that looks like the one that the page is for."""
+    page = window.page(window.shown)
+    buttons = [button for button in page.findChildren(QPushButton) if button.isVisibleTo(page)]
+    return [button.text() for button in buttons if button.property("role") == "primary"]
+
+
 @pytest.mark.parametrize("size", SIZES, ids=lambda size: f"{size[0]}x{size[1]}")
 @pytest.mark.parametrize("session", ["mug_session", "block_session"])
 def test_no_text_is_cut_and_nothing_scrolls_in_something_that_scrolls(window, session, size, qtbot, request):
@@ -98,6 +105,7 @@ def test_no_text_is_cut_and_nothing_scrolls_in_something_that_scrolls(window, se
                 qtbot.wait(100)
             assert cut_texts(window) == [], f"{key} {part}"
             assert nested_scrolling(window) == [], f"{key} {part}"
+            assert len(primary_buttons(window)) <= 1, f"{key} {part}"
 
 
 def test_a_text_that_is_cut_is_found(window):
