@@ -18,6 +18,7 @@ from app.cli.terminal import TerminalReporter, working
 from app.library.exchange import check_target, export_html, export_pdf, export_zip
 from app.library.index import Library
 from app.library.places import sessions_folder
+from app.library.session_folder import UNFINISHED_SCAN
 from app.library.summary import PourScore, SessionSummary
 from app.operations import pouring
 from app.operations.ahead import computing_ahead
@@ -69,7 +70,7 @@ def scan(
     terminal = TerminalReporter()
     operator = PrintingOperator(session) if is_confirmed else TerminalOperator(session, terminal)
     with working(session, choices, workers, terminal=terminal) as pipeline:
-        with computing_ahead(pipeline.parameters, pipeline.pool):
+        with computing_ahead(pipeline.parameters, pipeline.pool, session / UNFINISHED_SCAN):
             request = replace(request, cell_file=cell_file)
             scan_object(pipeline, settings, source, request, operator=operator)
         quality = pipeline.quality()
@@ -127,7 +128,7 @@ def demo(name: str, out: Path, choices: Choices, workers: int | None) -> None:
     """Do the whole job with a built-in object."""
     builtin_object(name)  # an unknown name is refused before anything is started
     with working(out, choices, workers) as pipeline:
-        with computing_ahead(pipeline.parameters, pipeline.pool):
+        with computing_ahead(pipeline.parameters, pipeline.pool, out / UNFINISHED_SCAN):
             scan_object(pipeline, read_cell(), name)
         result = pipeline.imagination()
         _print_verdict(result)

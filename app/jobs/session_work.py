@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING
 
 from app.jobs.messages import Event
 from app.jobs.service import ForwardingReporter, JobReporter, Service
+from app.library.session_folder import UNFINISHED_SCAN
 from app.operations.session import SessionTask, working_on
 from core.geometry import FloatArray
 from core.mesh import TriangleMesh
-from core.parameters import Parameters
 from core.progress import Reporter
 from core.scratch import ScratchFolder, remove_left
 from core.workers import Task, WorkerPool
 
 if TYPE_CHECKING:
+    from app.operations.ahead import ViewsAhead
     from core.imagination.risk.ahead import CupRunsAhead
     from hardware.cell.settings import CellSettings
 
@@ -59,7 +60,9 @@ class SessionWork(Service):
         super().__init__(send)
         self._pool = WorkerPool()
         self._ahead: CupRunsAhead | None = None
-        self._wanted_ahead: Parameters | None = None
+        self._views: ViewsAhead | None = None
+        self._wanted_ahead: SessionTask | None = None
+        self._has_new_view = False
 
     def prepare(self) -> None:
         """Start the workers, import what the first stage needs, and remove what a killed program left."""
@@ -74,19 +77,27 @@ class SessionWork(Service):
         """End the workers."""
         self._pool.close()
 
-    def compute_ahead(self, parameters: Parameters) -> None:
-        """Use idle time for what pours with these parameters will need, whatever the object; an order."""
-        self._wanted_ahead = parameters
+    def compute_ahead(self, task: SessionTask) -> None:
+        """Use idle time for what a scan of this session will need after its last view; an order."""
+        self._wanted_ahead = task
+
+    def read_ahead(self) -> None:
+        """A view has come to the scan that is being made; an order."""
+        self._has_new_view = True
 
     def use_idle_time(self, reporter: Reporter) -> bool:
-        """Rehearse what follows a scan and make some of the cup's runs, if somebody wants them."""
-        from app.operations.ahead import runs_ahead
+        """Rehearse what follows a scan, read its views, and make some of the cup's runs, if it is wanted."""
+        from app.operations.ahead import ViewsAhead, runs_ahead
         from core.pipeline.rehearsal import rehearse_in
 
         wanted, self._wanted_ahead = self._wanted_ahead, None
         if wanted is not None:
             rehearse_in(self._pool, reporter)
-            self._ahead = runs_ahead(wanted, self._pool, reporter)
+            self._ahead = runs_ahead(wanted.parameters, self._pool, reporter)
+            self._views = ViewsAhead(wanted.folder / UNFINISHED_SCAN, wanted.parameters, self._pool)
+        has_new_view, self._has_new_view = self._has_new_view, False
+        if has_new_view and self._views is not None:
+            self._views.read(reporter)
         ahead, self._ahead = self._ahead, None
         if ahead is not None and ahead.make_some():
             self._ahead = ahead

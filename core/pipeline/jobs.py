@@ -11,9 +11,10 @@ from core.quality.cavity import coarse_volume
 from core.quality.measures import ScanQuality
 from core.quality.verdict import assess
 from core.reconstruction.colors import ModelColors, photographed
+from core.reconstruction.pose_health import find_tables
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
-from core.scan import crop_box_of, stored_scan
+from core.scan import crop_box_of, stored_scan, views_so_far
 from core.workers import WorkerReporter
 
 JOBS_MODULE = __name__
@@ -27,6 +28,13 @@ def reconstruction_job(
     reporter = WorkerReporter()
     scan = stored_scan(scan_folder, WorkerReporter())  # its warnings were given when it was imported
     return reconstruct(scan, parameters, reporter), reporter.warnings
+
+
+def views_ahead_job(unfinished: Path, parameters: ReconstructionParameters) -> None:
+    """Decode the views that a scan has so far, and find the table in each; once each in this process."""
+    scan = views_so_far(unfinished)
+    if scan is not None:
+        find_tables(scan, parameters)
 
 
 def quality_job(

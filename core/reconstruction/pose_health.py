@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import ref
 
 import numpy as np
 import numpy.typing as npt
@@ -68,13 +69,33 @@ class PoseHealth:
 
 
 def find_tables(scan: Scan, parameters: ReconstructionParameters) -> tuple[Plane | None, ...]:
-    """Fit the table in every view, near the crop box; none where it is not seen."""
+    """Fit the table in every view, near the crop box; none where it is not seen.
+
+    Of a view that is still in memory it is fitted once: there is time for it while the arm takes the next.
+    """
     box = crop_box_of(scan, parameters)
 
     def find(frame: RgbdFrame) -> Plane | None:
-        return _find_table(frame, scan.intrinsics, box, parameters.max_depth_m)
+        key = id(frame), scan.intrinsics, box, parameters.max_depth_m
+        known = _tables.get(key)
+        if known is not None and known.of() is frame:
+            return known.table
+        table = _find_table(frame, scan.intrinsics, box, parameters.max_depth_m)
+        _tables[key] = _KnownTable(ref(frame, lambda _: _tables.pop(key, None)), table)
+        return table
 
     return tuple(in_threads(find, scan.frames))
+
+
+@dataclass(frozen=True)
+class _KnownTable:
+    """The table in a view, for as long as somebody holds the view."""
+
+    of: ref[RgbdFrame]
+    table: Plane | None
+
+
+_tables: dict[tuple[int, Intrinsics, CropBox, float], _KnownTable] = {}
 
 
 def pose_health_of(scan: Scan, tables: Sequence[Plane | None], box: CropBox) -> PoseHealth:

@@ -1,6 +1,13 @@
 """Scans: colour and depth images with poses, read from and written to the authors' layout."""
 
-from core.scan.authors_layout import read_scan, stored_scan, write_camera, write_frame, write_scan
+from core.scan.authors_layout import (
+    read_scan,
+    stored_scan,
+    views_so_far,
+    write_camera,
+    write_frame,
+    write_scan,
+)
 from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan, crop_box_of
 
 __all__ = [
@@ -11,6 +18,7 @@ __all__ = [
     "crop_box_of",
     "read_scan",
     "stored_scan",
+    "views_so_far",
     "write_camera",
     "write_frame",
     "write_scan",

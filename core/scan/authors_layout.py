@@ -13,6 +13,7 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,22 +25,20 @@ from core.files import read_content, reason, write_whole
 from core.formats import parse_json
 from core.geometry import AnyArray
 from core.progress import Reporter
+from core.scan.decoded import decoded_view
 from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
 from core.scan.view_files import (
+    ENDINGS,
     check_intrinsics_fit,
     depth_to_millimetres,
     matrix_text,
-    read_color,
-    read_depth,
     read_intrinsics,
-    read_pose,
 )
 
 STAGE = "import"
 FRAMES_FOLDER = "rgbd"
 INTRINSICS_FILE = "camera-intrinsics.txt"
 FACTS_FILE = "scan.json"
-ENDINGS = (".color.png", ".depth.png", ".pose.txt")
 SMALLEST_EDGE_M = 0.01
 FEWEST_VIEWS = 3
 SAME_POSE = 1e-9
@@ -68,6 +67,21 @@ def read_scan(folder: Path, reporter: Reporter) -> Scan:
     check_intrinsics_fit(intrinsics, width, height, intrinsics_path)
     useful = leave_out_useless(frames, frames_folder, reporter)
     return Scan(tuple(useful), intrinsics, *read_facts(intrinsics_path.parent / FACTS_FILE))
+
+
+def views_so_far(folder: Path) -> Scan | None:
+    """Read the views of a scan that is being made, as far as they are whole; none before the first.
+
+    What cannot be used is left to whoever reads the finished scan: it says so.
+    """
+    images = folder / FRAMES_FOLDER
+    names = sorted(path.name.removesuffix(ENDINGS[-1]) for path in images.glob(f"frame-*{ENDINGS[-1]}"))
+    try:
+        intrinsics = read_intrinsics(folder / INTRINSICS_FILE)
+        frames = tuple(decoded_view(images, name) for name in names)
+        return Scan(frames, intrinsics, *read_facts(folder / FACTS_FILE)) if frames else None
+    except InputError:
+        return None
 
 
 def stored_scan(folder: Path, reporter: Reporter) -> Scan:
@@ -145,14 +159,9 @@ def _find_intrinsics(folder: Path, frames_folder: Path) -> Path:
 
 
 def _read_frames(folder: Path, names: list[str], reporter: Reporter) -> list[RgbdFrame]:
-    def read(name: str) -> RgbdFrame:
-        pose = read_pose(folder / f"{name}.pose.txt")
-        depth = read_depth(folder / f"{name}.depth.png")
-        return RgbdFrame(name, read_color(folder / f"{name}.color.png"), depth, pose)
-
     frames: list[RgbdFrame] = []
     with ThreadPoolExecutor() as pool:  # Pillow decodes without the GIL
-        for frame in pool.map(read, names):
+        for frame in pool.map(partial(decoded_view, folder), names):
             frames.append(frame)
             reporter.progress(STAGE, len(frames), len(names))
             reporter.raise_if_cancelled()

@@ -14,6 +14,8 @@ from core.files import read_content, reason
 from core.geometry import AnyArray, FloatArray, rotation_error
 from core.scan.model import ColorImage, DepthImage, Intrinsics
 
+ENDINGS = (".color.png", ".depth.png", ".pose.txt")
+"""Of a view's files, in the order in which they are written."""
 MILLIMETRES_PER_METRE = 1000
 SMALLEST_PLAUSIBLE_DEPTH = 20
 """A depth image whose largest value is below this many millimetres was surely written in metres."""

@@ -16,8 +16,9 @@ from core.files import read_json, write_json
 from core.formats.scans import Views
 from core.progress import Reporter
 from core.scan import RgbdFrame, Scan, read_scan, write_camera, write_frame
-from core.scan.authors_layout import ENDINGS, FRAMES_FOLDER
+from core.scan.authors_layout import FRAMES_FOLDER
 from core.scan.model import CropBox, Intrinsics, crop_box
+from core.scan.view_files import ENDINGS
 from core.session import explained
 from core.session.record import RECORD_FILE
 from hardware.scanning.views import PlannedView, ScanPlan, ViewRecord, ViewState

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from app.gui.desk.desk import Desk
 from app.gui.desk.jobs import RunningJob
 from app.gui.pages.scan.loading import FRAMES
+from app.jobs.scan_events import ViewDone
 from app.jobs.scan_work import ScanWork
 from app.jobs.session_work import ScanChecked, SessionWork
 from app.library.places import new_session_folder
@@ -43,6 +44,7 @@ class ScanJobs(QObject):
         self._folder: Path | None = None
         self._new: Path | None = None
         desk.jobs.failed.connect(self._clear_up)
+        desk.jobs.event_received.connect(self._hear)
 
     @property
     def is_scanning(self) -> bool:
@@ -66,7 +68,7 @@ class ScanJobs(QObject):
             return
         request = replace(request, cell_file=desk.cell.path)
         desk.scan_host.order(ScanWork.get_ready)
-        desk.session_host.order(SessionWork.compute_ahead, desk.workspace.parameters)
+        desk.session_host.order(SessionWork.compute_ahead, desk.workspace.task())
         self._start(
             self.tr("Scan"),
             ScanWork.scan,
@@ -122,6 +124,11 @@ class ScanJobs(QObject):
                 desk.rename_session(name)
 
         desk.jobs.start(title, self._page, desk.session_host, method, task, path, then=open_it)
+
+    def _hear(self, news: object) -> None:
+        """What comes after the last view need not read those before it."""
+        if isinstance(news, ViewDone) and self.is_scanning:
+            self._desk.session_host.order(SessionWork.read_ahead)
 
     def _clear_up(self, *_: object) -> None:
         """The session of an import that failed holds nothing."""
