@@ -3,7 +3,7 @@
 Usage: python -m tests.benchmarks.decision [--objects DIR] [--others 5] [--only NAME ...]
 The labelled containers and some others are scanned in the simulated cell, one after the other with the same
 workers, as the window does. What is computed while an arm scans is computed before the first of them, for a
-scan by an arm takes longer than that; the views, also the last one, are read. Times are from the last view on.
+scan by an arm takes longer than that; the views, also the last, are read. Times are from the last view on.
 """
 
 from __future__ import annotations
