@@ -12,7 +12,7 @@ from PySide6.QtCore import QEvent, QPointF, QSize, Qt, Signal
 from PySide6.QtGui import QHelpEvent, QKeyEvent, QMouseEvent, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 
-from app.gui.views.pour_map_painter import LEGEND_PX, RIM_PX, PourMapPainter, place, points_text
+from app.gui.views.pour_map_painter import RIM_PX, PourMapPainter, legend_px, place, points_text
 from core.report.plot_geometry import PourMapLayout
 
 _STEPS = {Qt.Key.Key_Left: (1, 0), Qt.Key.Key_Right: (-1, 0), Qt.Key.Key_Up: (0, 1), Qt.Key.Key_Down: (0, -1)}
@@ -195,11 +195,11 @@ class PourMap(QWidget):
 
     def sizeHint(self) -> QSize:
         """Return a good size."""
-        return QSize(400, 400 + LEGEND_PX)
+        return QSize(400, 400 + legend_px(self.font()))
 
     def minimumSizeHint(self) -> QSize:
         """Return the smallest legible size."""
-        return QSize(320, 320 + LEGEND_PX)
+        return QSize(320, 320 + legend_px(self.font()))
 
     def _layout(self) -> PourMapLayout:
         n_directions, n_rings = self.shape
@@ -209,7 +209,7 @@ class PourMap(QWidget):
         return PourMapLayout(tuple(thetas), max(n_rings, 3), radius)
 
     def _center(self) -> QPointF:
-        return QPointF(self.width() / 2, (self.height() - LEGEND_PX) / 2)
+        return QPointF(self.width() / 2, (self.height() - legend_px(self.font())) / 2)
 
     def _cell_at(self, point: QPointF) -> tuple[int, int] | None:
         offset = point - self._center()

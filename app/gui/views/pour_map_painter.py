@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import cos, degrees, hypot, pi, radians, sin
+from math import ceil, cos, degrees, hypot, pi, radians, sin
 
 from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QLinearGradient, QPainter, QPainterPath, QPen, QPolygonF
+from PySide6.QtGui import (
+    QColor,
+    QFont,
+    QFontMetricsF,
+    QLinearGradient,
+    QPainter,
+    QPainterPath,
+    QPen,
+    QPolygonF,
+)
 from PySide6.QtWidgets import QWidget
 
 from app.gui.theme import GRID_PX, theme_of
@@ -16,8 +25,7 @@ from core.report.plot_geometry import Arc, PourMapLayout
 
 RIM_PX = 26
 """Around the rings, for the directions."""
-LEGEND_PX = 88
-"""Under them, for the colour scale, the marks and the rings' distances."""
+_SCALE_LINES, _MARKS_LINES, _MOST_WORDS, _AROUND_PX = 2.3, 1.25, 2, 2.0
 _FULL_ARC = 0.25
 """Spread at which the arc is as wide as its cell."""
 _LEGEND_STAR_PX = 6.0
@@ -29,6 +37,12 @@ _SMALL_POINTS = 10.0
 def place(center: QPointF, radius: float, angle_rad: float) -> QPointF:
     """Return the point at a polar place about the map's centre; y of the screen points down."""
     return center + QPointF(radius * cos(angle_rad), -radius * sin(angle_rad))
+
+
+def legend_px(font: QFont) -> int:
+    """Return the height under the rings for the colour scale, the marks and the rings' distances."""
+    line = QFontMetricsF(smaller(font)).height()
+    return ceil(2 * _AROUND_PX + (_SCALE_LINES + _MARKS_LINES + _MOST_WORDS) * line)
 
 
 def points_text(difference: float) -> str:
@@ -223,18 +237,18 @@ class PourMapPainter(QPainter):
 
         Args:
             title: what the colours stand for.
-            words: a line each.
+            words: a line each, two at most.
             has_marks: whether hatching, arc and star are explained.
         """
         self.setFont(smaller(self._font))
         line = QFontMetricsF(self.font()).height()
         left = float(GRID_PX)
-        top = self._size.height() - LEGEND_PX + 2.0
+        top = self._size.height() - legend_px(self._font) + _AROUND_PX
         self._paint_scale(title, QRectF(left, top, self._size.width() - 2 * left, line))
-        y = top + 2.3 * line
+        y = top + _SCALE_LINES * line
         if has_marks:
             self._paint_marks(left, y, line)
-            y += 1.25 * line
+            y += _MARKS_LINES * line
         self.setPen(self._theme.color("muted"))
         for text in words:
             box = QRectF(left, y, self._size.width() - 2 * left, line)

@@ -129,6 +129,14 @@ class Camera:
         """As far away as before times a factor."""
         return replace(self, distance_m=float(np.clip(factor * self.distance_m, _NEAREST_M, _FARTHEST_M)))
 
+    def zoomed_at(self, factor: float, pixel: tuple[float, float], size: Size) -> Camera:
+        """As `zoomed`, and what is seen through a pixel, as far away as the centre, stays under it."""
+        nearer = self.zoomed(factor)
+        share = 1 - nearer.distance_m / self.distance_m
+        return self.panned(share * (size[0] / 2 - pixel[0]), share * (size[1] / 2 - pixel[1]), size).zoomed(
+            factor
+        )
+
     def centered(self, point_m: FloatArray) -> Camera:
         """Looking at a point (3,) from the same side, as far away as before."""
         x, y, z = (float(value) for value in point_m)

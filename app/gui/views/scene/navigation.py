@@ -32,9 +32,9 @@ _ZOOMING_KEYS = {Qt.Key.Key_Plus: _KEY_ZOOM, Qt.Key.Key_Equal: _KEY_ZOOM, Qt.Key
 class Navigator(QObject):
     """Moves the camera, picks, and drags the handles of boxes.
 
-    Left drag turns, middle or shift and left moves, the wheel enlarges, a double click centres. The arrow
-    keys turn, plus and minus enlarge. Layers are fitted into view until the user moves: when one of them
-    appears and when the view's size changes.
+    Left drag turns, middle or shift and left moves, the wheel goes to the mouse, a double click centres. The
+    arrow keys turn, plus and minus enlarge. Layers are fitted into view until the user moves: when one of
+    them appears and when the view's size changes.
 
     Signals:
         picked: layer and index of what a click met.
@@ -128,7 +128,8 @@ class Navigator(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Take the events of mouse and keys, leave all others."""
         if isinstance(event, QWheelEvent):
-            self._zoom(_ZOOM_PER_STEP ** event.angleDelta().y())
+            at, factor = event.position(), _ZOOM_PER_STEP ** event.angleDelta().y()
+            self._change(self.camera.zoomed_at(factor, (at.x(), at.y()), self._size()))
             return True
         if isinstance(event, QKeyEvent) and event.type() in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
             self._key(event)

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -45,10 +46,22 @@ def test_a_click_picks_the_pour_under_it(qtbot, pour_map):
 
 
 def test_direction_zero_is_right_and_ninety_degrees_up(pour_map):
-    middle = QPoint(180, 180)
+    middle = pour_map._center().toPoint()
     assert place(pour_map, 0, 1).x() > middle.x() + 50
     assert abs(place(pour_map, 0, 1).y() - middle.y()) <= 1
     assert place(pour_map, 2, 1).y() < middle.y() - 50
+
+
+@pytest.mark.parametrize("points", [8, 11, 18])
+def test_whatever_the_font_no_line_of_the_legend_is_cut(qtbot, pour_map, points):
+    font = pour_map.font()
+    font.setPointSize(points)
+    pour_map.setFont(font)
+    pour_map.set_pours([replace(cell, clean_at_least=0.5) for cell in cells()], chosen=(2, 1))
+    pour_map.resize(pour_map.minimumSizeHint())
+    picture = pour_map.grab().toImage()
+    lowest = {picture.pixel(x, picture.height() - 1) for x in range(picture.width())}
+    assert len(lowest) == 1, "nothing is drawn there"
 
 
 def test_turning_moves_the_cells_anticlockwise(qtbot, pour_map):

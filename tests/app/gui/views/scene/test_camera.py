@@ -76,6 +76,16 @@ def test_panning_moves_the_centre_under_the_mouse():
     assert pixel == pytest.approx((480, 260))
 
 
+@pytest.mark.parametrize("factor", [0.5, 0.9, 1.3])
+def test_zooming_at_a_pixel_keeps_what_is_seen_there(factor):
+    camera, pixel = Camera((0.1, -0.2, 0.05), 0.8, 30.0, 25.0), (470.0, 90.0)
+    ray = camera.ray(pixel, SIZE)
+    point = ray.at(camera.distance_m / float(ray.direction @ -camera.axes[2]))
+    nearer = camera.zoomed_at(factor, pixel, SIZE)
+    assert nearer.distance_m == pytest.approx(factor * camera.distance_m)
+    np.testing.assert_allclose(nearer.project(point[None], SIZE)[0], pixel, atol=1e-6)
+
+
 def test_zooming_keeps_the_eye_within_reason():
     assert Camera(distance_m=2).zoomed(0.5).distance_m == 1
     assert Camera().zoomed(1e-9).distance_m > 0
