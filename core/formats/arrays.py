@@ -91,6 +91,8 @@ def check_arrays(path: Path, arrays: Mapping[str, AnyArray]) -> None:
         _check(arrays, _RECORDING)
     if path.name == "capacity.npz" and "hollow_pitch_m" in arrays:
         _check(arrays, _HOLLOWS)
+        if arrays["hollow_pitch_m"] <= 0:
+            raise ValueError("the pitch of the hollows is not above zero")
     for prefix in sorted({match[1] for name in arrays if (match := _POUR.fullmatch(name))}):
         _check(arrays, {prefix + name: kind_and_shape for name, kind_and_shape in _RECORDING.items()})
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from core.collision import CollisionModel
 from core.geometry import look_at
 from core.imagination.amount.result import Amount, PlannedAmount
 from core.imagination.capacity.result import Capacity
+from core.imagination.hollow_map import HollowMap
 from core.imagination.judgement import Judgement
 from core.imagination.recording import Recording
 from core.imagination.rendering.evidence import Evidence
@@ -146,9 +148,11 @@ def capacity() -> Capacity:
     """Two fillings."""
     curve = np.linspace(0, 0.04, 5), np.linspace(0, 20, 5)
     fillings = (30, 30), (25.0, 24.0), (21.0, 21.0)
-    return Capacity(
+    found = Capacity(
         21.0, 0.5, 17.0, 1.5, 18.0, 17.5, 1.0, *fillings, 0.04, 0.03, "", *curve, 1.2, recording(30)
     )
+    hollows = HollowMap(np.zeros(2), 0.01, np.full((3, 2), 0.04), np.full((3, 2), 0.01))
+    return replace(found, hollows=hollows)
 
 
 def retention() -> Retention:

@@ -1,9 +1,12 @@
 """A level filling meets the inner walls, not the outer ones, a handle's or those of what holds nothing."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from core.files import read_arrays, write_arrays
+from core.formats.arrays import check_arrays
 from core.imagination.capacity.water import find_basin
 from core.imagination.fill_line import fill_line
 from core.imagination.hollow_map import HollowMap
@@ -57,3 +60,20 @@ def test_a_map_is_kept_in_a_file(hollows, tmp_path):
     np.testing.assert_allclose(again.floor_m, hollows.floor_m, atol=1e-6)
     np.testing.assert_array_equal(again.origin_m, hollows.origin_m)
     assert again.pitch_m == hollows.pitch_m
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("hollow_pitch_m", np.array(0.0), "pitch"),
+        ("hollow_rim_m", np.zeros((1, 1)), "another shape"),
+        ("hollow_floor_m", np.full((3, 2), np.nan), "NaN"),
+    ],
+)
+def test_a_damaged_map_is_refused(name, value, said):
+    hollows = HollowMap(np.zeros(2), 0.01, np.full((3, 2), 0.04), np.full((3, 2), 0.01))
+    arrays = {"heights_m": np.zeros(2), "volumes_ml": np.zeros(2), **hollows.to_arrays()}
+    path = Path("judgement") / "capacity.npz"
+    check_arrays(path, arrays)
+    with pytest.raises(ValueError, match=said):
+        check_arrays(path, arrays | {name: value})
