@@ -82,7 +82,8 @@ def main() -> None:
     target = Path(sys.argv[1])
     target.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as home:
-        os.environ["XDG_CONFIG_HOME"] = os.environ["XDG_DATA_HOME"] = home
+        for variable in ("HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME"):
+            os.environ[variable] = home
         library = Path(home) / "sessions"
         os.environ[SESSIONS_VARIABLE] = str(library)
         for name, make in OBJECTS.items():

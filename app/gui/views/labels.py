@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtWidgets import QFrame, QLabel
@@ -58,3 +59,9 @@ def view_title(frame: str) -> str:
 def with_view_numbers(sentence: str) -> str:
     """Return a sentence that names frames, with the views' numbers instead."""
     return _FRAME.sub(lambda found: view_title(found[0]), sentence)
+
+
+def place_text(folder: Path) -> str:
+    """Return where a folder is, from the home folder on if it lies there."""
+    home = Path.home()
+    return str(Path("~") / folder.relative_to(home)) if folder.is_relative_to(home) else str(folder)

@@ -82,7 +82,7 @@ class OmegaBar(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         theme = theme_of(self)
         large = tabular(self.font(), self.font().pointSizeF() + 2, bold=True)
-        top = QFontMetricsF(large).height() + 2
+        top = QFontMetricsF(large).height() + 4  # the threshold ends below the letters
         bar = QRectF(GRID_PX, top, self.width() - 2 * GRID_PX, _BAR_PX)
         painter.setFont(large)
         painter.setPen(theme.color("text"))

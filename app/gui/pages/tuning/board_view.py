@@ -22,7 +22,7 @@ from app.gui.pages.tuning.object_pictures import PICTURE_PX
 from app.gui.pages.tuning.score_cell import CELL_ROLE, ScoreCell, ScoreDelegate
 from app.gui.theme import GRID_PX
 from app.gui.views.fact_table import Column, FactTable, Row
-from app.gui.views.labels import heading, text_label
+from app.gui.views.labels import heading, place_text, text_label
 from app.gui.views.painting import tabular
 from app.operations.tuning_board import Board, ParameterSet
 from core.evaluation.labels import LABELS, LabelledObject
@@ -286,7 +286,8 @@ class BoardView(QWidget):
         self._hint.setText(hint)
         self._stack.setCurrentIndex(0 if board is None else 1)
         self._export.setEnabled(board is not None and bool(board.sets))
-        self._source.setText("" if board is None else str(board.source))
+        self._source.setText("" if board is None else place_text(board.source))
+        self._source.setToolTip("" if board is None else str(board.source))
         self.objects.show_board(board)
         self.sets.show_board(board)
         self.update_buttons()
