@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from datetime import datetime
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,6 +20,7 @@ from core.report import Media, ReportContent
 from core.session import Session
 from core.session.operator_choice import read_operator_choice
 from core.session.pour_runs import pour_runs
+from core.session.record import StageRecord
 from core.stages import STAGE_NAMES
 
 if TYPE_CHECKING:
@@ -76,12 +79,22 @@ def gather(
         pictures={caption: content for caption, content in named.items() if caption not in films},
         films={caption: content for caption, content in named.items() if caption in films},
         seconds={stage: record.seconds for stage, record in made.items()},
+        known_s=_known_s(made),
         versions=made["containability"].versions,
         warnings=tuple(warnings),
         motions=motions,
         runs=tuple(pour_runs(session.path)),
         operator=read_operator_choice(session.path, made["pouring"].digest),
     )
+
+
+def _known_s(made: Mapping[str, StageRecord]) -> dict[str, float]:
+    """Seconds from the scan's last view to the end of each stage, by the records' clocks."""
+    if "scan" not in made:
+        return {}
+    ended = {stage: datetime.fromisoformat(record.created) for stage, record in made.items()}
+    known_s = {stage: (time - ended["scan"]).total_seconds() for stage, time in ended.items()}
+    return {stage: seconds for stage, seconds in known_s.items() if seconds >= 0}
 
 
 def _model_pictures(session: Session, surface: TriangleMesh) -> dict[str, Media]:

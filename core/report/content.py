@@ -52,6 +52,7 @@ class ReportContent:
         pictures: caption to picture; wide ones get a row of their own.
         films: caption to film.
         seconds: stage to how long it took.
+        known_s: stage to seconds from the scan's last view to its end; empty where nothing was scanned.
         versions: program to version.
         warnings: sentences the stages gave.
         motions: which pours an arm can make; None when that was not checked.
@@ -80,6 +81,7 @@ class ReportContent:
     pictures: Mapping[str, Media] = field(default_factory=dict)
     films: Mapping[str, Media] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
+    known_s: Mapping[str, float] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     motions: PourMotions | None = None

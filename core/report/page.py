@@ -17,6 +17,7 @@ from core.report.plots import footprint_plot, pour_map, retention_plot
 from core.report.sentences import (
     MM,
     has_spread,
+    known_sentence,
     motion_sentence,
     omega_texts,
     omega_verdict_sentence,
@@ -94,6 +95,7 @@ def _page_data(content: ReportContent) -> dict[str, Any]:
         "object_facts": object_facts(content.surface, content.reconstruction),
         "parameter_rows": parameter_rows(content.parameters, content.preset),
         "time_rows": time_rows(dict(content.seconds)),
+        "known_said": known_sentence(content.known_s),
         "total_s": f"{sum(content.seconds.values()):.1f}",
         "operator_said": _operator_said(content),
         **_omega_data(found),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import degrees
 from typing import TYPE_CHECKING
 
@@ -259,6 +260,20 @@ def duration_text(seconds: float) -> str:
         return f"{max(round(seconds), 1)} s"
     minutes = round(seconds / 60)
     return f"{minutes} min" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
+
+
+def known_sentence(known_s: Mapping[str, float]) -> str:
+    """Say how long after a scan's last view each answer was there; empty if nothing is known of that.
+
+    Args:
+        known_s: stage to seconds from the last view to its end.
+    """
+    named = {"reconstruction": "the model", "judgement": "the verdict", "risk": "the chosen pour"}
+    said = [f"{named[name]} {duration_text(known_s[name])}" for name in named if name in known_s]
+    if not said:
+        return ""
+    *others, last = said
+    return f"After the last view: {' and '.join(filter(None, (', '.join(others), last)))}."
 
 
 def percent(share: float) -> str:

@@ -1,6 +1,7 @@
 """Stale and fresh: a changed parameter makes the stages after it stale, and nothing else."""
 
 import json
+import re
 import shutil
 from dataclasses import replace
 
@@ -109,6 +110,9 @@ def test_only_what_a_parameter_touches_runs_again(session, pool):
     written = path.read_text(encoding="utf-8")
     assert "Open container" in written
     assert "From behind" in written, "the model in its photographed colours"
+    assert re.search(
+        r"After the last view: the model \d+ s, the verdict \d+ s and the chosen pour \d+ s\.", written
+    )
     first = created(session)
     assert list(first) == list(STAGES)
 

@@ -18,7 +18,7 @@ from core.report import (
     verdict_summary,
     verdict_words,
 )
-from core.report.sentences import direction_text, duration_text, held_text, percent
+from core.report.sentences import direction_text, duration_text, held_text, known_sentence, percent
 
 
 def test_verdict(tray: Containability, block: Containability) -> None:
@@ -208,3 +208,19 @@ def test_what_was_not_seen_is_said_with_both_answers(tray):
         "No pours were imagined because too little of the inside was seen."
     )
     assert verdict_words(found.is_open_container, found.is_undecided) == "Cannot tell"
+
+
+@pytest.mark.parametrize(
+    ("known_s", "said"),
+    [
+        ({}, ""),
+        ({"scan": 0.0}, ""),
+        ({"judgement": 3.6}, "After the last view: the verdict 4 s."),
+        (
+            {"scan": 0.0, "reconstruction": 1.2, "judgement": 4.0, "pouring": 8.0, "risk": 75.0},
+            "After the last view: the model 1 s, the verdict 4 s and the chosen pour 1 min.",
+        ),
+    ],
+)
+def test_it_is_said_when_each_answer_was_known(known_s: dict[str, float], said: str) -> None:
+    assert known_sentence(known_s) == said

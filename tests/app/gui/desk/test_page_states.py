@@ -30,6 +30,18 @@ def test_figures_show_what_was_found(desk, mug_session):
     assert states["pours"].figure.endswith("%")
 
 
+def test_the_tab_tells_the_chosen_pours_figure_not_the_best(desk, mug_session):
+    desk.workspace.open(mug_session)
+    i, j = desk.workspace.view.place
+    path = mug_session / "pouring" / "pours.json"
+    table = json.loads(path.read_text())
+    table["p"] = [[1.0] * len(row) for row in table["p"]]
+    table["p"][i][j] = 0.97
+    path.write_text(json.dumps(table))
+    _of_this_size(mug_session / "pouring", path)
+    assert _read_anew(desk)["pours"].figure == "97 %"
+
+
 def test_running_and_failed_pages_are_marked(desk, mug_session):
     desk.workspace.open(mug_session)
     states = with_failure(page_states(desk.workspace, "imagination"), "reconstruction")
