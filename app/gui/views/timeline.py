@@ -29,8 +29,6 @@ STEP_S = 1 / 24
 """Arrow keys step by one recorded frame."""
 _TICK_MS = 40
 _HEAD_PX = 8
-_LEAST_LETTERS = 6
-"""A name is not shortened to fewer: that would be unreadable."""
 
 
 @dataclass(frozen=True)
@@ -345,12 +343,13 @@ class Scrubber(QWidget):
             if section.begin_s > 0:
                 painter.setPen(QPen(theme.color("window"), 2))
                 painter.drawLine(QPointF(left, track.top()), QPointF(left, track.bottom()))
-            box = QRectF(left + 5, track.top(), right - left - 8, track.height())
-            text = metrics.elidedText(section.name, Qt.TextElideMode.ElideRight, box.width())
-            is_readable = text == section.name or len(text) >= _LEAST_LETTERS
-            if is_readable and not box.intersects(plate):
+            box = QRectF(left + 5, track.top(), right - left - 7, track.height())
+            # A name that has no room is written on a plate when its section is the current one.
+            if metrics.horizontalAdvance(section.name) <= box.width() and not box.intersects(plate):
                 painter.setPen(theme.color("text"))
-                painter.drawText(box, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, text)
+                painter.drawText(
+                    box, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, section.name
+                )
 
     def _plate(self, track: QRectF, metrics: QFontMetricsF) -> QRectF:
         """Where the current section's name goes if its section is too narrow; empty if it fits."""
