@@ -23,10 +23,11 @@ from hardware.robots.ur.messages import Connected, Ended, Pulse, Reply, Request,
 class UrMove:
     """A motion under way; made by `UR5Robot`, which reports to it how it ended."""
 
-    def __init__(self, name: str, progress: Callable[[], float], stop: Callable[[], None]) -> None:
-        """Belong to a robot of this name."""
+    def __init__(self, name: str, progress: Callable[[float], float], stop: Callable[[], None]) -> None:
+        """Belong to a robot of this name; `progress` tells it by what was read since a `time.monotonic`."""
         self._name = name
         self._ask_progress, self._stop = progress, stop
+        self._began_s = time.monotonic()
         self._progress = 0.0
         self._error: RobotError | None = None
         self._is_over = Event()
@@ -40,7 +41,7 @@ class UrMove:
     @property
     def progress(self) -> float:
         """Share of the path that is done, 0 to 1."""
-        reported = 0.0 if self._is_over.is_set() else min(self._ask_progress(), 1.0)
+        reported = 0.0 if self._is_over.is_set() else min(self._ask_progress(self._began_s), 1.0)
         with self._lock:  # it may have ended meanwhile, and what was reported before must not stay
             if not self._is_over.is_set():
                 self._progress = max(self._progress, reported)
@@ -170,10 +171,14 @@ class WorkerLink:
             raise self._lost(silence)
         return raw
 
-    def progress(self) -> float:
-        """Share of the present motion that is done; 0 when nothing is known of it."""
+    def progress(self, since_s: float) -> float:
+        """Share of the motion begun at `since_s` that is done; 0 when nothing is known of it.
+
+        A state that was read before tells of the motion before, which was all done.
+        """
         with suppress(RobotLost):
-            return float(self.state()["progress"])
+            state = self.state()
+            return float(state["progress"]) if state["time_s"] >= since_s else 0.0
         return 0.0
 
     def comes_to_rest(self, within_s: float, speed_rad_s: float) -> bool:
