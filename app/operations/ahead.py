@@ -53,8 +53,9 @@ class ViewsAhead:
         """
         from core.pipeline.jobs import views_ahead_job
         from core.scan.authors_layout import FRAMES_FOLDER
+        from core.scan.view_files import ENDINGS
 
-        n_views = len(list((self._unfinished / FRAMES_FOLDER).glob("*.pose.txt")))
+        n_views = len(list((self._unfinished / FRAMES_FOLDER).glob(f"*{ENDINGS[-1]}")))
         if n_views == self._n_read:
             return
         self._n_read = n_views

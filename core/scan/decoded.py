@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from pathlib import Path
+from threading import Lock
 
 from core.scan.model import RgbdFrame
 from core.scan.view_files import ENDINGS, read_color, read_depth, read_pose
@@ -13,6 +14,8 @@ MOST_KEPT = 40
 _FileState = tuple[str, int, int]
 _Key = tuple[_FileState, ...]
 _kept: OrderedDict[_Key, RgbdFrame] = OrderedDict()
+_keeping = Lock()
+"""Views are decoded by several threads at once."""
 
 
 def decoded_view(folder: Path, name: str) -> RgbdFrame:
@@ -27,11 +30,16 @@ def decoded_view(folder: Path, name: str) -> RgbdFrame:
         key = tuple(_state(folder / (name + ending)) for ending in ENDINGS)
     except OSError:
         return _decode(folder, name)  # says what is wrong with which file
-    if key not in _kept:
-        _kept[key] = _decode(folder, name)
-    while len(_kept) > MOST_KEPT:
-        _kept.popitem(last=False)
-    return _kept[key]
+    with _keeping:
+        known = _kept.get(key)
+    if known is not None:
+        return known
+    frame = _decode(folder, name)
+    with _keeping:
+        _kept[key] = frame
+        while len(_kept) > MOST_KEPT:
+            _kept.popitem(last=False)
+    return frame
 
 
 def _decode(folder: Path, name: str) -> RgbdFrame:
