@@ -141,7 +141,7 @@ def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
     Raises:
         PoursightError: the scan cannot be read.
     """
-    from core.quality.cavity import coarse_volume, find_hidden_cavity
+    from core.quality.plain_fusion import coarse_volume
     from core.scan import read_scan
     from hardware.scanning.next_best_views import propose
     from hardware.scanning.planning import cell_for_plan
@@ -151,12 +151,8 @@ def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
     cell = _unconnected(settings)
     cell = cell if plan is None else cell_for_plan(cell, plan)
     volume = coarse_volume(scan, cell.settings.place.crop_box)
-    n_hidden = len(find_hidden_cavity(volume, settings.place.platform_height_m).region)
-    if n_hidden == 0:
-        return Proposal(0, 0.0)
-    height, width = scan.frames[0].depth_m.shape
-    proposals = propose(cell, volume, scan.intrinsics, (width, height))
-    return Proposal(len(proposals), sum(n_revealed for _, n_revealed in proposals) / n_hidden)
+    proposals = propose(cell, scan, volume)
+    return Proposal(len(proposals), sum(share for _, share in proposals))
 
 
 def object_mesh(source: str, reporter: Reporter) -> TriangleMesh:

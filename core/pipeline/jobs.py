@@ -7,8 +7,8 @@ from pathlib import Path
 from core.collision import CollisionModel, build_collision_model
 from core.mesh import TriangleMesh
 from core.parameters.reconstruction import CollisionParameters, ReconstructionParameters
-from core.quality.cavity import coarse_volume
 from core.quality.measures import ScanQuality
+from core.quality.plain_fusion import coarse_volume
 from core.quality.verdict import assess
 from core.reconstruction.colors import ModelColors, photographed
 from core.reconstruction.pose_health import find_tables

@@ -9,15 +9,8 @@ from core.geometry import BoolArray
 from core.quality.measures import HiddenCavity
 from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import find_unseen_inside
-from core.scan.model import CropBox, Intrinsics, RgbdFrame, Scan
 
-COARSE_VOXEL_M = 0.004
-FRONT_VOXELS, BEHIND_VOXELS = 4.0, 2.5
-FARTHEST_M = 6.0
 RIM_LAYERS = 4
-
-_fused: list[tuple[Scan, CropBox, TsdfVolume]] = []
-"""What `coarse_volume` fused last."""
 
 
 def find_hidden_cavity(volume: TsdfVolume, platform_height_m: float) -> HiddenCavity:
@@ -40,33 +33,6 @@ def find_hidden_cavity(volume: TsdfVolume, platform_height_m: float) -> HiddenCa
         depth_m=depth * volume.voxel_m,
         width_m=width * volume.voxel_m,
     )
-
-
-def empty_coarse_volume(box: CropBox) -> TsdfVolume:
-    """A volume over the crop box, as coarse as coverage and a live picture need."""
-    return TsdfVolume(
-        box.min_m, box.max_m, COARSE_VOXEL_M, FRONT_VOXELS * COARSE_VOXEL_M, BEHIND_VOXELS * COARSE_VOXEL_M
-    )
-
-
-def fuse_coarsely(volume: TsdfVolume, frame: RgbdFrame, intrinsics: Intrinsics) -> None:
-    """Fuse one view into a coarse volume; 12 ms."""
-    volume.integrate(frame, intrinsics, FARTHEST_M)
-
-
-def coarse_volume(scan: Scan, box: CropBox) -> TsdfVolume:
-    """Fuse all views coarsely, the same scan (see `stored_scan`) once per process; 0.3 s.
-
-    The volume is shared: do not fuse anything else into it.
-    """
-    for known_scan, known_box, volume in _fused:
-        if known_scan is scan and known_box == box:
-            return volume
-    volume = empty_coarse_volume(box)
-    for frame in scan.frames:
-        fuse_coarsely(volume, frame, scan.intrinsics)
-    _fused[:] = [(scan, box, volume)]
-    return volume
 
 
 def _depth_and_width(frontier: BoolArray, enclosed: BoolArray) -> tuple[float, float]:

@@ -21,6 +21,7 @@ from core.geometry import BoolArray, FloatArray, IntArray, invert_pose, transfor
 from core.quality.measures import HiddenCavity
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics
+from core.threads import in_threads
 
 MOST_VIEWS = 6
 SMALLEST_SHARE = 0.02
@@ -72,7 +73,7 @@ class ProposedView:
 
 @dataclass(frozen=True)
 class _Scene:
-    """The block of the volume around a cavity.
+    """The volume from a little below a cavity up.
 
     Attributes:
         origin_m: (3,) lower corner of its first voxel.
@@ -98,9 +99,9 @@ def propose_views(
 ) -> tuple[ProposedView, ...]:
     """Choose up to `most` of the candidates `T_base_camera` (N, 4, 4), each for what it adds.
 
-    About 1 ms a candidate. Stops where a view adds less than 2 % of the hidden region; nothing hidden, or
-    nothing that any candidate could reveal, gives an empty answer. `can_take` is asked of those alone that
-    would be chosen, and one that it refuses is left out.
+    About 1 ms a candidate at 4 mm, 3 ms at 2 mm, on one processor. Stops where a view adds less than 2 % of
+    the hidden region; nothing hidden, or nothing that any candidate could reveal, gives an empty answer.
+    `can_take` is asked of those alone that would be chosen, and one that it refuses is left out.
     """
     if len(cavity.region) == 0 or len(candidates) == 0:
         return ()
@@ -148,8 +149,9 @@ def revealed_voxels(
     scene = _scene(volume, cavity, platform_height_m)
     revealed = np.zeros((len(candidates), len(cavity.region)), dtype=np.bool_)
     corners_m = _corners_m(volume, cavity)
-    for pose, row in zip(candidates, revealed, strict=True):
-        window = _window(pose, corners_m, camera, spacing_voxels * volume.voxel_m)
+
+    def look(k: int) -> None:
+        window = _window(candidates[k], corners_m, camera, spacing_voxels * volume.voxel_m)
         if window is not None:
             _reveal(
                 scene.wall,
@@ -157,23 +159,23 @@ def revealed_voxels(
                 scene.targets,
                 scene.origin_m,
                 volume.voxel_m,
-                np.ascontiguousarray(pose, dtype=float),
+                np.ascontiguousarray(candidates[k], dtype=float),
                 camera.intrinsics.matrix,
                 window,
                 camera.baseline_m,
                 camera.min_range_m,
                 cos(camera.max_incidence_rad),
-                row,
+                revealed[k],
             )
+
+    in_threads(look, range(len(candidates)))
     return revealed
 
 
 def _scene(volume: TsdfVolume, cavity: HiddenCavity, platform_height_m: float) -> _Scene:
-    low = np.maximum(cavity.region.min(axis=0) - PADDING_VOXELS, 0)
-    # Up to the volume's top: a rim above the cavity throws its shadow into it.
-    high = np.minimum(cavity.region.max(axis=0) + PADDING_VOXELS, volume.weight.shape)
-    high[2] = volume.weight.shape[2]
-    block = tuple(slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+    # All around and up to the top: the wall on the other side and a rim above throw their shadows into it.
+    low = np.array([0, 0, max(int(cavity.region[:, 2].min()) - PADDING_VOXELS, 0)])
+    block = (slice(None), slice(None), slice(int(low[2]), None))
     depth_voxels = -volume.distance[block] * (volume.truncation_m / volume.voxel_m)
     wall = (volume.weight[block] > 0) & (depth_voxels > 0) & (depth_voxels < WALL_VOXELS)
     platform_layer = round((platform_height_m - volume.origin_m[2]) / volume.voxel_m) - int(low[2])

@@ -21,19 +21,24 @@ from core.quality.next_views import (
     revealed_voxels,
     worth_of,
 )
+from core.quality.plain_fusion import close_volume
 from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import find_unseen_inside
-from core.scan.model import Intrinsics
+from core.scan.model import Scan
 from hardware.cell import Cell
 from hardware.cell.scene import view_task
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import Joints, ViewState, name_views
 
 MOST_VIEWS = 6
+MOST_VIEWS_FOR_BOTTOM = 12
+"""More are taken while there may be a hole in the bottom: that decides the verdict."""
 VIEWS_A_ROUND = 2
 """What these reveal changes what the others would, so the rest is chosen anew."""
 UNSEEN_SHARE = 0.04
 """A scan that left more than this share of the inside unseen looks into it; or a way through the bottom."""
+SAME_POSE = 2e-3
+"""Poses of the camera that differ by no more, in metres and in the axes' components, are one."""
 INTO_OPENINGS = Dome(
     elevations_deg=(20, 30, 40, 50, 56, 62, 68, *range(70, 91, 2)),
     azimuths_deg=tuple(range(-180, 180, 20)),
@@ -44,42 +49,44 @@ INTO_OPENINGS = Dome(
 views come densely, from afar and with every roll. Below a lid that is half open only flat ones look."""
 
 
-def propose(
-    cell: Cell,
-    volume: TsdfVolume,
-    intrinsics: Intrinsics,
-    image_size: tuple[int, int],
-    most: int = MOST_VIEWS,
-) -> list[tuple[Joints, int]]:
-    """Return up to `most` views, each with how many unseen voxels it reveals, best first.
+def propose(cell: Cell, scan: Scan, coarse: TsdfVolume, most: int = MOST_VIEWS) -> list[tuple[Joints, float]]:
+    """Return up to `most` views, each with the share of what is hidden that it reveals, best first.
 
     Each has a clear straight way from home, so that it is reached from wherever the arm is.
 
     Args:
         cell: with its arm and obstacles.
-        volume: everything fused so far.
-        intrinsics: of the camera.
-        image_size: width and height in pixels.
+        scan: everything that was taken.
+        coarse: all of it, fused.
         most: how many.
     """
-    height_m = cell.settings.place.platform_height_m
+    place = cell.settings.place
+    close = close_volume(scan, coarse, place.platform_height_m, place.crop_box)
+    # What fine voxels show as seen may still hide from coarse ones, which tell whether to look.
+    for volume in (coarse,) if close is None else (close, coarse):
+        if proposed := _propose_in(volume, cell, scan, most):
+            return proposed
+    return []
+
+
+def _propose_in(volume: TsdfVolume, cell: Cell, scan: Scan, most: int) -> list[tuple[Joints, float]]:
+    place = cell.settings.place
+    height_m = place.platform_height_m
     cavity = find_hidden_cavity(volume, height_m)
     if len(cavity.region) == 0:
         return []
-    place = cell.settings.place
     hidden_m: FloatArray = volume.centers_m(cavity.region)
+    camera = _depth_camera(cell, scan)
     task = replace(
         view_task(cell.settings, np.array(place.crop_min_m), np.array(place.crop_max_m)),
         target_m=hidden_m.mean(axis=0),
-        field_of_view_deg=intrinsics.field_of_view_deg(image_size),
+        field_of_view_deg=scan.intrinsics.field_of_view_deg((camera.width_px, camera.height_px)),
     )
-    different = _one_each(near_home(reachable_views(cell.scene, task, INTO_OPENINGS), task))
+    reachable = near_home(reachable_views(cell.scene, task, INTO_OPENINGS), task)
+    different = _not_taken(_one_each(reachable), scan)
     if not different:
         return []
     poses = np.array([view.T_base_camera for view in different])
-    width, height = image_size
-    settings = cell.settings.camera
-    camera = DepthCamera(intrinsics, width, height, settings.baseline_m, settings.min_range_m)
     revealed = revealed_voxels(volume, cavity, height_m, poses, camera, SPARSE_SPACING_VOXELS)
     told = worth_of(revealed, bottom_of(volume, cavity, height_m))
     best = _best_of_each_direction(different, told.tolist())
@@ -92,7 +99,16 @@ def propose(
         most,
         lambda k: is_clear_from_home(cell.scene, task, different[best[k]]),
     )
-    return [(tuple(different[best[p.index]].joints_rad.tolist()), p.n_revealed_voxels) for p in proposed]
+    return [
+        (tuple(different[best[p.index]].joints_rad.tolist()), p.n_revealed_voxels / len(cavity.region))
+        for p in proposed
+    ]
+
+
+def _depth_camera(cell: Cell, scan: Scan) -> DepthCamera:
+    height, width = scan.frames[0].depth_m.shape
+    settings = cell.settings.camera
+    return DepthCamera(scan.intrinsics, width, height, settings.baseline_m, settings.min_range_m)
 
 
 def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
@@ -112,27 +128,24 @@ def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
         return 0
     chosen_before = procedure.records[n_own:]
     procedure.take([record.view for record in chosen_before if record.state is ViewState.PENDING])
-    most = MOST_VIEWS - len(chosen_before)
-    return take_next_best_views(cell, procedure, most, UNSEEN_SHARE)
+    return take_next_best_views(cell, procedure, UNSEEN_SHARE, len(chosen_before))
 
 
 def take_next_best_views(
-    cell: Cell, procedure: ScanProcedure, most: int = MOST_VIEWS, least_share: float = 0.0
+    cell: Cell, procedure: ScanProcedure, least_share: float = 0.0, n_before: int = 0
 ) -> int:
     """Propose views and take them, a few at a time; return how many.
 
     Args:
         cell: of the procedure.
         procedure: which has taken other views.
-        most: how many at most.
         least_share: of the inside; while no more of it is unseen, and the unseen is no way through its
             bottom, none is taken.
+        n_before: how many such views the scan has already; they count.
     """
     taken = 0
-    while taken < most and _is_more_to_see(cell, procedure.volume, least_share):
-        proposals = propose(
-            cell, procedure.volume, *procedure.camera_facts(), min(VIEWS_A_ROUND, most - taken)
-        )
+    while (left := _most_views(cell, procedure.volume, least_share) - n_before - taken) > 0:
+        proposals = propose(cell, procedure.scan(), procedure.volume, min(VIEWS_A_ROUND, left))
         if not proposals:
             break
         procedure.take(name_views([joints for joints, _ in proposals], first=len(procedure.records)))
@@ -140,10 +153,18 @@ def take_next_best_views(
     return taken
 
 
-def _is_more_to_see(cell: Cell, volume: TsdfVolume, least_share: float) -> bool:
-    """Whether more than a share of the inside of openings is unseen, or there may be a hole in its bottom."""
+def _most_views(cell: Cell, volume: TsdfVolume, least_share: float) -> int:
+    """How many views are worth taking: most where there may be a hole in the bottom of an opening."""
     unseen = find_unseen_inside(volume, cell.settings.place.platform_height_m)
-    return unseen.room_share(volume.voxel_m) > least_share or unseen.way_through(volume) is not None
+    if unseen.way_through(volume) is not None:
+        return MOST_VIEWS_FOR_BOTTOM
+    return MOST_VIEWS if unseen.room_share(volume.voxel_m) > least_share else 0
+
+
+def _not_taken(views: list[ReachableView], scan: Scan) -> list[ReachableView]:
+    """Those from which the scan has no view: what one did not show, it does not show the second time."""
+    taken = np.array([frame.T_base_camera for frame in scan.frames])
+    return [view for view in views if np.abs(taken - view.T_base_camera).max(axis=(1, 2)).min() > SAME_POSE]
 
 
 def _best_of_each_direction(views: list[ReachableView], worth: list[int]) -> list[int]:

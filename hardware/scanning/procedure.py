@@ -12,7 +12,7 @@ from core.errors import MotionError, Remedy, StageError
 from core.formats import excerpt
 from core.geometry import FloatArray
 from core.progress import Reporter
-from core.quality.cavity import empty_coarse_volume, fuse_coarsely
+from core.quality.plain_fusion import empty_coarse_volume, fuse_plainly
 from core.quality.view_quality import ViewQuality, check_view
 from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics, RgbdFrame, Scan
@@ -269,7 +269,7 @@ class ScanProcedure:
         is_new = view.name not in self._frames
         self._frames[view.name] = frame
         if is_new:
-            fuse_coarsely(self.volume, frame, intrinsics)
+            fuse_plainly(self.volume, frame, intrinsics)
         return record
 
     def _report(self, outcome: ViewRecord) -> None:
@@ -291,7 +291,7 @@ class ScanProcedure:
         assert self._intrinsics is not None, "there are frames"
         self.volume = empty_coarse_volume(self._cell.settings.place.crop_box)
         for frame in self._frames.values():
-            fuse_coarsely(self.volume, frame, self._intrinsics)
+            fuse_plainly(self.volume, frame, self._intrinsics)
 
     @property
     def _is_instant(self) -> bool:

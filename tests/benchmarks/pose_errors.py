@@ -22,8 +22,8 @@ from core.imagination.imagination import WORKER_MODULE
 from core.mesh import TriangleMesh
 from core.parameters import Parameters, apply_settings
 from core.progress import Reporter
-from core.quality.cavity import coarse_volume
 from core.quality.measures import ScanQuality
+from core.quality.plain_fusion import coarse_volume
 from core.quality.verdict import assess
 from core.reconstruction.stage import reconstruct
 from core.scan.model import crop_box_of

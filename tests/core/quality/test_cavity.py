@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.quality.cavity import coarse_volume, find_hidden_cavity
+from core.quality.cavity import find_hidden_cavity
+from core.quality.plain_fusion import coarse_volume
 from core.scan import CropBox
 from hardware.simulation.objects import builtin_object
 from tests.core.quality.studio import BOX, FEW_RINGS, PLATFORM_M, VOXEL_M, on_platform, shaft, upside_down

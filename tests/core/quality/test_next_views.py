@@ -10,8 +10,9 @@ import pytest
 from core.geometry import look_at
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.quality.cavity import coarse_volume, find_hidden_cavity
+from core.quality.cavity import find_hidden_cavity
 from core.quality.next_views import BOTTOM_WORTH, bottom_of, propose_views, revealed_voxels, worth_of
+from core.quality.plain_fusion import coarse_volume
 from core.reconstruction.stage import reconstruct
 from tests.awake import in_time
 from tests.core.quality.studio import BOX, CAMERA, LOW_RINGS, PLATFORM_M, dome, on_platform, tube
@@ -115,6 +116,15 @@ def test_only_a_view_through_the_opening_counts(hidden):
     from_the_side = look_at([x + 0.6, y, z + 0.1], [x, y, z])
     past_it = look_at([x, y, z + 0.6], [x + 0.5, y, z + 0.3])
     assert proposed(hidden, [from_the_side, past_it]) == ()
+
+
+def test_a_wall_stops_a_view_however_far_from_what_is_hidden_it_stands(hidden):
+    volume, cavity = hidden
+    x_m = volume.centers_m(cavity.region)[:, 0]
+    at_one_side = replace(cavity, region=cavity.region[x_m > np.quantile(x_m, 0.95)])
+    x, y, z = volume.centers_m(at_one_side.region).mean(axis=0)
+    through_the_other_side = look_at([x - 0.5, y, z + 0.3], [x, y, z])
+    assert revealed_voxels(volume, at_one_side, PLATFORM_M, through_the_other_side[None], CAMERA).sum() == 0
 
 
 def revealed(hidden, pose, **changed) -> int:

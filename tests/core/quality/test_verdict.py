@@ -9,8 +9,8 @@ from core.errors import SessionError
 from core.geometry import make_pose
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.quality.cavity import coarse_volume
 from core.quality.measures import HiddenCavity, ScanQuality
+from core.quality.plain_fusion import coarse_volume
 from core.quality.verdict import (
     HIDDEN_AREA_USABLE_M2,
     RESIDUAL_AGAIN_M,
