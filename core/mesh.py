@@ -46,6 +46,13 @@ class TriangleMesh:
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6)
 
     @property
+    def mean_thickness_m(self) -> float:
+        """Mean thickness of the walls of a closed shell, which has two sides; zero without a face."""
+        a, b, c = (self.vertices_m[self.faces[:, k]] for k in range(3))
+        area_m2 = float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2)
+        return 2 * self.volume_m3 / area_m2 if area_m2 > 0 else 0.0
+
+    @property
     def vertex_normals(self) -> FloatArray:
         """Unit normals (V, 3), outward, the adjacent faces' weighted by their area; zero without a face."""
         a, b, c = (self.vertices_m[self.faces[:, k]] for k in range(3))

@@ -197,6 +197,7 @@ class Capacity(TypedDict):
     unseen_ml: NotRequired[FiniteFloat]
     is_hollow_told: NotRequired[bool]
     hidden_ml: NotRequired[FiniteFloat]
+    is_thin: NotRequired[bool]
     too_small_m: NotRequired[FiniteFloat | None]
 
 

@@ -48,10 +48,12 @@ def imagine_capacity(context: ImaginationContext, model: CollisionModel, drop: D
             found = replace(found, too_small_m=half_m)
     if model.surface_error_m == 0 or not found.n_kept:
         return found
-    least_ml, most_ml = between_ml(found.filled_ml, basin, model.surface_error_m)
+    is_thin = model.surface.mean_thickness_m < _THIN_M
+    least_ml, most_ml = between_ml(found.filled_ml, basin, model.surface_error_m, is_thin)
+    found = replace(found, least_ml=least_ml, is_thin=is_thin)
     if model.unseen is not None:
-        return replace(found, least_ml=least_ml, unseen_ml=model.unseen.unseen_ml)
-    return replace(found, least_ml=least_ml, most_ml=most_ml)
+        return replace(found, unseen_ml=model.unseen.unseen_ml)
+    return replace(found, most_ml=most_ml)
 
 
 def with_hidden(context: ImaginationContext, model: CollisionModel, found: Capacity) -> Capacity:
@@ -62,21 +64,24 @@ def with_hidden(context: ImaginationContext, model: CollisionModel, found: Capac
     return replace(found, hidden_ml=max(roomy.candies_ml - found.filled_ml, 0.0))
 
 
-_INWARDS = 1 / 3
-"""Share of the surface's error by which a hollow comes out too large: what errs makes it smaller."""
+_INWARDS, _OUTWARDS, _OUTWARDS_THIN = 1 / 3, 1.0, 1.5
+"""Shares of the surface's error by which a hollow comes out too large, or too small, which is likelier."""
+_THIN_M = 0.003
+"""Walls below 2 mm come out this thin at most, for voxels hold no thinner ones (decision 0057)."""
 _RIM_M = 0.002
 """The uppermost layer of a hollow tells how wide its mouth is."""
 
 
-def between_ml(volume_ml: float, basin: Basin, error_m: float) -> tuple[float, float]:
+def between_ml(volume_ml: float, basin: Basin, error_m: float, is_thin: bool) -> tuple[float, float]:
     """Return the least and the most that a level volume may truly be.
 
-    All of the hollow's boundary, its mouth included, lies further in or out by the surface's error.
+    All of the hollow's boundary, its mouth included, lies further in or out by a share of the error.
 
     Args:
         volume_ml: as told.
         basin: the hollow.
         error_m: how far the surface may lie from the true one.
+        is_thin: whether its walls are about as thin as a scan can tell.
     """
     if not len(basin.volumes_ml):
         return volume_ml, volume_ml
@@ -84,7 +89,8 @@ def between_ml(volume_ml: float, basin: Basin, error_m: float) -> tuple[float, f
     below_ml = float(np.interp(top_m - _RIM_M, basin.heights_m, basin.volumes_ml))
     mouth_m2 = (basin.candies_ml - below_ml) / ML / min(_RIM_M, top_m - float(basin.heights_m[0]))
     shift_ml = (mouth_m2 + basin.around.floor_m2 + basin.around.side_m2) * error_m * ML
-    return float(max(volume_ml - _INWARDS * shift_ml, 0.0)), float(volume_ml + shift_ml)
+    outwards = _OUTWARDS_THIN if is_thin else _OUTWARDS
+    return float(max(volume_ml - _INWARDS * shift_ml, 0.0)), float(volume_ml + outwards * shift_ml)
 
 
 def bulk_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:

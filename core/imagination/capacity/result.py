@@ -15,10 +15,11 @@ from core.imagination.recording import Recording
 
 CAPACITY_FILE = "capacity.json"
 _ARRAYS = "capacity.npz"
-_OUTWARDS = 0.6
+_OUTWARDS, _OUTWARDS_THIN = 0.6, 1.5
 """A scan's hollows are too small: by so much of what parts them from the least volume (decision 0042).
 
-That one lies a third of the surface's error further in, so this is a fifth of it, further out.
+That one lies a third of the surface's error further in, so this is a fifth of it, further out; half of it
+where walls are thin (decision 0057).
 """
 
 
@@ -55,6 +56,8 @@ class Capacity:
         hidden_ml: what the hollow for candies holds more if all that no view saw of it is hollow; zero if all
             was seen, and of what is no container either way.
         hollows: for candies, seen from above; none in sessions of earlier versions.
+        is_thin: whether it was scanned and its walls are about as thin as a scan can tell: they come out too
+            thick then, and the hollow too small.
         too_small_m: size of candies that would fall through its openings; none if half as large ones stay.
     """
 
@@ -83,6 +86,7 @@ class Capacity:
     hidden_ml: float = 0.0
     too_small_m: float | None = None
     hollows: HollowMap | None = None
+    is_thin: bool = False
 
     @property
     def n_level(self) -> float:
@@ -95,8 +99,10 @@ class Capacity:
 
         What scans usually lose is added, and what no view saw: hollows seldom end where a view does.
         """
-        lost_ml = 0.0 if self.least_ml is None else _OUTWARDS * (self.filled_ml - self.least_ml)
-        return self.filled_ml + lost_ml + self.hidden_ml
+        if self.least_ml is None:
+            return self.filled_ml + self.hidden_ml
+        outwards = _OUTWARDS_THIN if self.is_thin else _OUTWARDS
+        return self.filled_ml + outwards * (self.filled_ml - self.least_ml) + self.hidden_ml
 
     @property
     def level_candies(self) -> float:

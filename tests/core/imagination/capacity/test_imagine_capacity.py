@@ -71,6 +71,20 @@ def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, fill
     assert "40 ml more inside were not seen" in hidden.between
 
 
+@pytest.mark.parametrize(
+    ("wall_m", "is_thin", "told", "most"), [(0.0025, True, 0.5, 1.5), (0.004, False, 0.2, 1)]
+)
+def test_a_scan_of_thin_walls_shows_less_than_they_hold(wall_m, is_thin, told, most, candies, few):
+    surface = open_box((0.06, 0.06, 0.06), wall_m)
+    assert surface.mean_thickness_m == pytest.approx(wall_m, rel=0.15)
+    scanned = replace(CollisionModel.exact(surface), surface_error_m=0.001)
+    found = fill(scanned, candies, few, RunHere())
+    assert found.is_thin == is_thin
+    error_ml = 3 * (found.filled_ml - found.least_ml)
+    assert found.level_ml - found.filled_ml == pytest.approx(told * error_ml)
+    assert found.most_ml - found.filled_ml == pytest.approx(most * error_ml)
+
+
 def test_few_large_balls_in_narrow_hollows_do_not_make_them_smaller(candies, few):
     """Twelve compartments, 36 mm wide: of balls of 26 mm less than two thirds of what candies would fill."""
     wide, wall, high = 0.036, 0.002, 0.05
