@@ -31,7 +31,7 @@ from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import Joints, ViewState, name_views
 
 MOST_VIEWS = 6
-MOST_VIEWS_FOR_BOTTOM = 12
+MOST_VIEWS_FOR_BOTTOM = 16
 """More are taken while there may be a hole in the bottom: that decides the verdict."""
 VIEWS_A_ROUND = 2
 """What these reveal changes what the others would, so the rest is chosen anew."""
