@@ -132,7 +132,7 @@ def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
 
 
 def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
-    """Choose reachable views that would show more of what a finished scan left hidden; takes up to 6 s.
+    """Choose reachable views that would show more of what a finished scan left hidden; takes up to 15 s.
 
     Args:
         scan_folder: of the scan, taken in this cell.

@@ -34,7 +34,9 @@ MOST_VIEWS = 6
 MOST_VIEWS_FOR_BOTTOM = 16
 """More are taken while there may be a hole in the bottom: that decides the verdict."""
 VIEWS_A_ROUND = 2
-"""What these reveal changes what the others would, so the rest is chosen anew."""
+"""What these reveal changes what the others would, so the rest is chosen anew, ..."""
+LATER_VIEWS_A_ROUND = 5
+"""... and what comes after `MOST_VIEWS` at once: it changes less, and an operator confirms each round."""
 UNSEEN_SHARE = 0.04
 """A scan that left more than this share of the inside unseen looks into it; or a way through the bottom."""
 SAME_POSE = 2e-3
@@ -143,14 +145,15 @@ def take_next_best_views(
             bottom, none is taken.
         n_before: how many such views the scan has already; they count.
     """
-    taken = 0
-    while (left := _most_views(cell, procedure.volume, least_share) - n_before - taken) > 0:
-        proposals = propose(cell, procedure.scan(), procedure.volume, min(VIEWS_A_ROUND, left))
+    n_now = n_before
+    while (most := _most_views(cell, procedure.volume, least_share)) > n_now:
+        a_round = VIEWS_A_ROUND if n_now < MOST_VIEWS else LATER_VIEWS_A_ROUND
+        proposals = propose(cell, procedure.scan(), procedure.volume, min(a_round, most - n_now))
         if not proposals:
             break
         procedure.take(name_views([joints for joints, _ in proposals], first=len(procedure.records)))
-        taken += len(proposals)
-    return taken
+        n_now += len(proposals)
+    return n_now - n_before
 
 
 def _most_views(cell: Cell, volume: TsdfVolume, least_share: float) -> int:
