@@ -15,10 +15,10 @@ from core.imagination.recording import Recording
 
 CAPACITY_FILE = "capacity.json"
 _ARRAYS = "capacity.npz"
-_OUTWARDS, _OUTWARDS_THIN = 0.6, 1.5
+_OUTWARDS, _OUTWARDS_THIN = 0.6, 1.2
 """A scan's hollows are too small: by so much of what parts them from the least volume (decision 0042).
 
-That one lies a third of the surface's error further in, so this is a fifth of it, further out; half of it
+That one lies a third of the surface's error further in, so this is a fifth of it, further out; two fifths
 where walls are thin (decision 0057).
 """
 

@@ -72,7 +72,7 @@ def test_of_a_scan_it_is_told_how_far_the_volume_can_be_trusted(exact_dish, fill
 
 
 @pytest.mark.parametrize(
-    ("wall_m", "is_thin", "told", "most"), [(0.0025, True, 0.5, 1.5), (0.004, False, 0.2, 1)]
+    ("wall_m", "is_thin", "told", "most"), [(0.0025, True, 0.4, 1.5), (0.004, False, 0.2, 1)]
 )
 def test_a_scan_of_thin_walls_shows_less_than_they_hold(wall_m, is_thin, told, most, candies, few):
     surface = open_box((0.06, 0.06, 0.06), wall_m)
