@@ -67,7 +67,7 @@ def with_hidden(context: ImaginationContext, model: CollisionModel, found: Capac
 _INWARDS, _OUTWARDS, _OUTWARDS_THIN = 1 / 3, 1.0, 1.5
 """Shares of the surface's error by which a hollow comes out too large, or too small, which is likelier."""
 _THIN_M = 0.003
-"""Walls below 2 mm come out this thin at most, for voxels hold no thinner ones (decision 0057)."""
+"""Walls below 2 mm come out up to this thick, for voxels hold no thinner ones (decision 0057)."""
 _RIM_M = 0.002
 """The uppermost layer of a hollow tells how wide its mouth is."""
 

@@ -34,7 +34,7 @@ def goblet() -> CollisionModel:
 
 @pytest.fixture(scope="module")
 def context():
-    return here(apply_settings(Parameters(), {"pouring.n_pour": 12}))
+    return here(apply_settings(Parameters(), {"pouring.n_pour": 6}))
 
 
 @pytest.mark.parametrize(
@@ -94,10 +94,7 @@ def test_the_outcome_is_that_of_waiting_until_all_rest(monkeypatch, context, gob
     (early, steps), (late, steps_to_rest) = found
     assert (early.n_in, early.n_spilled) == (late.n_in, late.n_spilled)
     assert (late.n_spilled > 0) == (off_m > 0)
-    # Of a pour that spills, a candy that rolls on the ground may be the last to rest: which one is, hangs on
-    # the machine's arithmetic.
-    assert steps <= steps_to_rest
-    assert steps < steps_to_rest or off_m > 0
+    assert steps < steps_to_rest
     if not is_try:
         last_m = np.nanmax(np.abs(early.recording.positions_m[-1] - late.recording.positions_m[-1]))
         assert last_m < context.parameters.particle.diameter_m  # it ends with candies that look at rest

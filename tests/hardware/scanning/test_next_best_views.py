@@ -15,7 +15,7 @@ from core.reconstruction.stage import reconstruct
 from core.scan import Scan
 from hardware.cell import CellSettings, open_cell, read_cell
 from hardware.scanning.next_best_views import (
-    MOST_VIEWS_FOR_BOTTOM,
+    MOST_VIEWS,
     look_inside,
     propose,
     take_next_best_views,
@@ -62,7 +62,7 @@ def test_a_narrow_vase_goes_from_a_dent_to_its_true_depth():
         joints = np.array([record.view.joints_rad for record in procedure.records])
     assert before_m < DEPTH_M / 2
     assert after_m == pytest.approx(DEPTH_M, abs=0.01)
-    assert 1 <= n_views <= MOST_VIEWS_FOR_BOTTOM
+    assert 1 <= n_views <= MOST_VIEWS
     assert len(joints) == 24 + n_views
     scene: MotionScene = cell.scene
     assert scene.clearance(joints).distance_m.min() >= CELL.scan.min_clearance_m - 1e-6
@@ -83,7 +83,7 @@ def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
         n_more = look_inside(cell, procedure, len(cell.views_rad))
         assert depth_m(procedure.scan()) > DEPTH_M / 2
     assert n_views >= 1
-    assert n_views + n_more <= MOST_VIEWS_FOR_BOTTOM
+    assert n_views + n_more <= MOST_VIEWS
 
 
 def test_no_view_is_proposed_that_the_scan_has_already():
