@@ -141,17 +141,16 @@ def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
     Raises:
         PoursightError: the scan cannot be read.
     """
-    from core.quality.plain_fusion import coarse_volume
     from core.scan import read_scan
-    from hardware.scanning.next_best_views import propose
+    from hardware.scanning.next_best_views import object_volume, propose
     from hardware.scanning.planning import cell_for_plan
     from hardware.scanning.store import read_plan
 
     scan, plan = read_scan(scan_folder, Reporter()), read_plan(scan_folder)
     cell = _unconnected(settings)
     cell = cell if plan is None else cell_for_plan(cell, plan)
-    volume = coarse_volume(scan, cell.settings.place.crop_box)
-    proposals = propose(cell, scan, volume)
+    volume = object_volume(scan)
+    proposals = [] if volume is None else propose(cell, scan, volume)
     return Proposal(len(proposals), sum(share for _, share in proposals))
 
 

@@ -9,19 +9,22 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.errors import StageError
 from core.geometry import FloatArray
 from core.motion.box_views import is_clear_from_home, near_home
 from core.motion.views import Dome, ReachableView, reachable_views
+from core.parameters.reconstruction import ReconstructionParameters
+from core.progress import Reporter
 from core.quality.cavity import find_hidden_cavity
 from core.quality.next_views import (
-    SPARSE_SPACING_VOXELS,
     DepthCamera,
     bottom_of,
     propose_views,
     revealed_voxels,
+    sample_of,
     worth_of,
 )
-from core.quality.plain_fusion import close_volume
+from core.reconstruction.fusion import fuse_object
 from core.reconstruction.tsdf import TsdfVolume
 from core.reconstruction.unseen import find_unseen_inside
 from core.scan.model import Scan
@@ -31,14 +34,18 @@ from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import Joints, ViewState, name_views
 
 MOST_VIEWS = 6
-MOST_VIEWS_FOR_BOTTOM = 16
-"""More are taken while there may be a hole in the bottom: that decides the verdict."""
+MOST_VIEWS_FOR_VERDICT = 16
+"""More are taken while the verdict hangs on them: while there may be a hole in the bottom, ..."""
+MOSTLY_UNSEEN_SHARE = 0.5
+"""... or more of the inside is unseen than seen."""
 VIEWS_A_ROUND = 2
 """What these reveal changes what the others would, so the rest is chosen anew, ..."""
 LATER_VIEWS_A_ROUND = 5
 """... and what comes after `MOST_VIEWS` at once: it changes less, and an operator confirms each round."""
 UNSEEN_SHARE = 0.04
 """A scan that left more than this share of the inside unseen looks into it; or a way through the bottom."""
+SAMPLE, SPARSE_SAMPLE = 5000, 1000
+"""How many voxels of a large hidden region are looked for; fewer while candidates are thousands."""
 SAME_POSE = 2e-3
 """Poses of the camera that differ by no more, in metres and in the axes' components, are one."""
 INTO_OPENINGS = Dome(
@@ -51,7 +58,19 @@ INTO_OPENINGS = Dome(
 views come densely, from afar and with every roll. Below a lid that is half open only flat ones look."""
 
 
-def propose(cell: Cell, scan: Scan, coarse: TsdfVolume, most: int = MOST_VIEWS) -> list[tuple[Joints, float]]:
+def object_volume(scan: Scan) -> TsdfVolume | None:
+    """Fuse a scan as the reconstruction will, which alone knows what it takes for seen; 1 to 4 s.
+
+    Plain fusion in coarse voxels takes a few millimetres more behind a wall for solid, and half of a narrow
+    mouth. None if there is no object.
+    """
+    try:
+        return fuse_object(scan, ReconstructionParameters(), Reporter()).volume
+    except StageError:
+        return None
+
+
+def propose(cell: Cell, scan: Scan, volume: TsdfVolume, most: int = MOST_VIEWS) -> list[tuple[Joints, float]]:
     """Return up to `most` views, each with the share of what is hidden that it reveals, best first.
 
     Each has a clear straight way from home, so that it is reached from wherever the arm is.
@@ -59,19 +78,9 @@ def propose(cell: Cell, scan: Scan, coarse: TsdfVolume, most: int = MOST_VIEWS) 
     Args:
         cell: with its arm and obstacles.
         scan: everything that was taken.
-        coarse: all of it, fused.
+        volume: all of it, fused (see `object_volume`).
         most: how many.
     """
-    place = cell.settings.place
-    close = close_volume(scan, coarse, place.platform_height_m, place.crop_box)
-    # What fine voxels show as seen may still hide from coarse ones, which tell whether to look.
-    for volume in (coarse,) if close is None else (close, coarse):
-        if proposed := _propose_in(volume, cell, scan, most):
-            return proposed
-    return []
-
-
-def _propose_in(volume: TsdfVolume, cell: Cell, scan: Scan, most: int) -> list[tuple[Joints, float]]:
     place = cell.settings.place
     height_m = place.platform_height_m
     cavity = find_hidden_cavity(volume, height_m)
@@ -89,12 +98,13 @@ def _propose_in(volume: TsdfVolume, cell: Cell, scan: Scan, most: int) -> list[t
     if not different:
         return []
     poses = np.array([view.T_base_camera for view in different])
-    revealed = revealed_voxels(volume, cavity, height_m, poses, camera, SPARSE_SPACING_VOXELS)
-    told = worth_of(revealed, bottom_of(volume, cavity, height_m))
+    sparse, sample = sample_of(cavity.region, SPARSE_SAMPLE), sample_of(cavity.region, SAMPLE)
+    revealed = revealed_voxels(volume, sparse, height_m, poses, camera)
+    told = worth_of(revealed, bottom_of(volume, sparse, height_m))
     best = _best_of_each_direction(different, told.tolist())
     proposed = propose_views(
         volume,
-        cavity,
+        sample,
         height_m,
         poses[best],
         camera,
@@ -102,7 +112,7 @@ def _propose_in(volume: TsdfVolume, cell: Cell, scan: Scan, most: int) -> list[t
         lambda k: is_clear_from_home(cell.scene, task, different[best[k]]),
     )
     return [
-        (tuple(different[best[p.index]].joints_rad.tolist()), p.n_revealed_voxels / len(cavity.region))
+        (tuple(different[best[p.index]].joints_rad.tolist()), p.n_revealed_voxels / len(sample))
         for p in proposed
     ]
 
@@ -146,9 +156,12 @@ def take_next_best_views(
         n_before: how many such views the scan has already; they count.
     """
     n_now = n_before
-    while (most := _most_views(cell, procedure.volume, least_share)) > n_now:
+    if not find_unseen_inside(procedure.volume, cell.settings.place.platform_height_m).region.any():
+        return 0
+    while (volume := object_volume(scan := procedure.scan())) is not None:
+        most = _most_views(cell, volume, least_share)
         a_round = VIEWS_A_ROUND if n_now < MOST_VIEWS else LATER_VIEWS_A_ROUND
-        proposals = propose(cell, procedure.scan(), procedure.volume, min(a_round, most - n_now))
+        proposals = propose(cell, scan, volume, min(a_round, most - n_now)) if most > n_now else []
         if not proposals:
             break
         procedure.take(name_views([joints for joints, _ in proposals], first=len(procedure.records)))
@@ -157,11 +170,12 @@ def take_next_best_views(
 
 
 def _most_views(cell: Cell, volume: TsdfVolume, least_share: float) -> int:
-    """How many views are worth taking: most where there may be a hole in the bottom of an opening."""
+    """How many views are worth taking: most where the verdict hangs on what was not seen."""
     unseen = find_unseen_inside(volume, cell.settings.place.platform_height_m)
-    if unseen.way_through(volume) is not None:
-        return MOST_VIEWS_FOR_BOTTOM
-    return MOST_VIEWS if unseen.room_share(volume.voxel_m) > least_share else 0
+    share = unseen.room_share(volume.voxel_m)
+    if share > MOSTLY_UNSEEN_SHARE or unseen.way_through(volume) is not None:
+        return MOST_VIEWS_FOR_VERDICT
+    return MOST_VIEWS if share > least_share else 0
 
 
 def _not_taken(views: list[ReachableView], scan: Scan) -> list[ReachableView]:

@@ -11,7 +11,14 @@ from core.geometry import look_at
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.quality.cavity import find_hidden_cavity
-from core.quality.next_views import BOTTOM_WORTH, bottom_of, propose_views, revealed_voxels, worth_of
+from core.quality.next_views import (
+    BOTTOM_WORTH,
+    bottom_of,
+    propose_views,
+    revealed_voxels,
+    sample_of,
+    worth_of,
+)
 from core.quality.plain_fusion import coarse_volume
 from core.reconstruction.stage import reconstruct
 from tests.awake import in_time
@@ -41,7 +48,7 @@ def look_again(studio, scan):
         if len(cavity.region) == 0:
             break
         candidates = dome(cavity.frontier_m.mean(axis=0))
-        proposed = propose_views(volume, cavity, PLATFORM_M, candidates, CAMERA, most)
+        proposed = propose_views(volume, cavity.region, PLATFORM_M, candidates, CAMERA, most)
         poses = candidates[[view.index for view in proposed]]
         scan = replace(scan, frames=scan.frames + studio.take(poses, first=len(scan.frames)))
     return scan
@@ -69,13 +76,18 @@ def hidden(vase_scan):
     return volume, find_hidden_cavity(volume, PLATFORM_M)
 
 
+def asked_of(hidden):
+    volume, cavity = hidden
+    return volume, cavity.region
+
+
 def from_above(hidden, distance_m: float = 0.6) -> np.ndarray:
     x, y, z = hidden[1].frontier_m.mean(axis=0)
     return look_at([x, y, z + distance_m], [x, y, z])
 
 
 def proposed(hidden, candidates, camera=CAMERA, most=6):
-    return propose_views(*hidden, PLATFORM_M, np.asarray(candidates), camera, most)
+    return propose_views(*asked_of(hidden), PLATFORM_M, np.asarray(candidates), camera, most)
 
 
 def test_hundreds_of_candidates_take_less_than_two_seconds(hidden):
@@ -86,8 +98,8 @@ def test_hundreds_of_candidates_take_less_than_two_seconds(hidden):
     in_time(process_time() - started, 2)
     assert len(candidates) > 450
     assert len({view.index for view in views}) == len(views) == 6
-    is_bottom = bottom_of(*hidden, PLATFORM_M)
-    left = revealed_voxels(*hidden, PLATFORM_M, candidates[[view.index for view in views]], CAMERA)
+    is_bottom = bottom_of(*asked_of(hidden), PLATFORM_M)
+    left = revealed_voxels(*asked_of(hidden), PLATFORM_M, candidates[[view.index for view in views]], CAMERA)
     gains = []
     for row, view in enumerate(views):
         new = left[row] & ~left[:row].any(axis=0)
@@ -98,12 +110,26 @@ def test_hundreds_of_candidates_take_less_than_two_seconds(hidden):
 
 def test_the_bottom_is_worth_more_than_what_lies_above(hidden):
     volume, cavity = hidden
-    is_bottom = bottom_of(volume, cavity, PLATFORM_M)
+    is_bottom = bottom_of(volume, cavity.region, PLATFORM_M)
     above_m = volume.centers_m(cavity.region)[:, 2] - PLATFORM_M
     assert is_bottom[above_m < 0.008].all() and (above_m < 0.008).any()
     assert not is_bottom[above_m > 0.02].any() and (above_m > 0.02).any()
     one_each = np.stack([is_bottom, ~is_bottom])
     assert worth_of(one_each, is_bottom).tolist() == [BOTTOM_WORTH * is_bottom.sum(), (~is_bottom).sum()]
+
+
+def test_a_sample_stands_for_the_whole_region(hidden):
+    volume, region = asked_of(hidden)
+    sample = sample_of(region, 500)
+    assert len(sample) == 500 < len(region) and len(np.unique(sample, axis=0)) == 500
+    np.testing.assert_allclose(sample.mean(axis=0), region.mean(axis=0), atol=0.5)
+    assert sample_of(sample, 500) is sample
+    views = dome(hidden[1].frontier_m.mean(axis=0))[::9]
+    shares = [
+        revealed_voxels(volume, asked, PLATFORM_M, views, CAMERA).mean(axis=1) for asked in (region, sample)
+    ]
+    assert shares[0].max() > 0.1
+    np.testing.assert_allclose(shares[1], shares[0], atol=0.05)
 
 
 def test_a_view_that_was_chosen_adds_nothing_again(hidden):
@@ -121,15 +147,15 @@ def test_only_a_view_through_the_opening_counts(hidden):
 def test_a_wall_stops_a_view_however_far_from_what_is_hidden_it_stands(hidden):
     volume, cavity = hidden
     x_m = volume.centers_m(cavity.region)[:, 0]
-    at_one_side = replace(cavity, region=cavity.region[x_m > np.quantile(x_m, 0.95)])
-    x, y, z = volume.centers_m(at_one_side.region).mean(axis=0)
+    at_one_side = cavity.region[x_m > np.quantile(x_m, 0.95)]
+    x, y, z = volume.centers_m(at_one_side).mean(axis=0)
     through_the_other_side = look_at([x - 0.5, y, z + 0.3], [x, y, z])
     assert revealed_voxels(volume, at_one_side, PLATFORM_M, through_the_other_side[None], CAMERA).sum() == 0
 
 
 def revealed(hidden, pose, **changed) -> int:
     camera = replace(CAMERA, **changed)
-    return int(revealed_voxels(*hidden, PLATFORM_M, pose[None], camera).sum())
+    return int(revealed_voxels(*asked_of(hidden), PLATFORM_M, pose[None], camera).sum())
 
 
 def test_what_the_projector_does_not_light_is_not_revealed(hidden):
@@ -152,4 +178,4 @@ def test_range_and_grazing_angle_limit_what_is_revealed(hidden):
 def test_nothing_hidden_asks_for_no_views(mug_scan):
     volume = coarse_volume(mug_scan, BOX)
     cavity = find_hidden_cavity(volume, PLATFORM_M)
-    assert propose_views(volume, cavity, PLATFORM_M, dome(np.zeros(3)), CAMERA) == ()
+    assert propose_views(volume, cavity.region, PLATFORM_M, dome(np.zeros(3)), CAMERA) == ()

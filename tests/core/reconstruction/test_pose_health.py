@@ -7,8 +7,9 @@ import pytest
 
 from core.geometry import make_pose
 from core.parameters.reconstruction import ReconstructionParameters
+from core.reconstruction.fusion import Truncation, choose_truncation, view_error_m
 from core.reconstruction.pose_health import PoseHealth, find_tables, pose_health_of
-from core.reconstruction.stage import Truncation, choose_truncation, reconstruct, view_error_m
+from core.reconstruction.stage import reconstruct
 from core.scan import Scan, crop_box_of
 
 TABLE_M = 0.02

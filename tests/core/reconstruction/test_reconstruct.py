@@ -9,7 +9,8 @@ import trimesh
 
 from core.errors import Cancelled, StageError
 from core.mesh import TriangleMesh
-from core.reconstruction.stage import reconstruct, voxel_of
+from core.reconstruction.fusion import voxel_of
+from core.reconstruction.stage import reconstruct
 from core.scan.model import crop_box
 
 PLATFORM_M = 0.08

@@ -10,13 +10,14 @@ from core.mesh import TriangleMesh
 from core.motion.clearance import MotionScene
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
-from core.quality.plain_fusion import coarse_volume
 from core.reconstruction.stage import reconstruct
+from core.reconstruction.unseen import find_unseen_inside
 from core.scan import Scan
 from hardware.cell import CellSettings, open_cell, read_cell
 from hardware.scanning.next_best_views import (
     MOST_VIEWS,
     look_inside,
+    object_volume,
     propose,
     take_next_best_views,
 )
@@ -24,6 +25,7 @@ from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import name_views
 from hardware.simulation.objects import builtin_object
 from hardware.simulation.placing import world_with
+from tests.core.imagination.capacity.conftest import turned
 from tests.core.quality.studio import tube
 
 pytestmark = pytest.mark.system
@@ -72,7 +74,7 @@ def test_nothing_is_proposed_where_everything_was_seen():
     with scanning(builtin_object("bowl"), 0) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad[::2]))
-        assert propose(cell, procedure.scan(), procedure.volume) == []
+        assert propose(cell, procedure.scan(), object_volume(procedure.scan())) == []
 
 
 def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
@@ -86,12 +88,35 @@ def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
     assert n_views + n_more <= MOST_VIEWS
 
 
+def shouldered_jar() -> TriangleMesh:
+    """Of 4 litres, its floor 30 mm wider on each side than its mouth."""
+    floor_m, belly_m, mouth_m, high_m, wall_m = 0.086, 0.1, 0.05, 0.16, 0.003
+    outside = [(0, 0), (floor_m, 0), (belly_m, 0.056), (belly_m, 0.088), (mouth_m, 0.144), (mouth_m, high_m)]
+    inside = [(x - wall_m, max(z, wall_m)) for x, z in outside[:0:-1]]
+    return turned([*outside, *inside, (0, wall_m)])
+
+
+def test_what_the_reconstruction_takes_for_unseen_is_looked_at():
+    """In coarse voxels a foot of the wall is seen that the reconstruction is not sure of."""
+
+    def may_have_a_hole(scan: Scan) -> bool:
+        volume = object_volume(scan)
+        return find_unseen_inside(volume, CELL.place.platform_height_m).way_through(volume) is not None
+
+    with scanning(shouldered_jar(), 1) as cell:
+        procedure = ScanProcedure(cell, None, Reporter())
+        procedure.take(name_views(cell.views_rad))
+        assert may_have_a_hole(procedure.scan())
+        assert look_inside(cell, procedure, len(cell.views_rad)) <= MOST_VIEWS
+        assert not may_have_a_hole(procedure.scan())
+
+
 def test_no_view_is_proposed_that_the_scan_has_already():
     with scanning(tube(0.04, DEPTH_M), SEED) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
         before = procedure.scan()
-        volume = coarse_volume(before, cell.settings.place.crop_box)
+        volume = object_volume(before)
         (first, _), *_ = propose(cell, before, volume)
         procedure.take(name_views([first], first=len(before.frames)))
         taken = procedure.scan().frames[-1]
