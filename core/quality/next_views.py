@@ -22,7 +22,6 @@ from core.reconstruction.tsdf import TsdfVolume
 from core.scan.model import Intrinsics
 from core.threads import in_threads
 
-MOST_VIEWS = 6
 SMALLEST_SHARE = 0.02
 """A further view must reveal this share of the hidden region, ..."""
 FEWEST_VOXELS = 10
@@ -88,7 +87,7 @@ def propose_views(
     platform_height_m: float,
     candidates: FloatArray,
     camera: DepthCamera,
-    most: int = MOST_VIEWS,
+    most: int,
     can_take: Callable[[int], bool] = lambda _index: True,
 ) -> tuple[ProposedView, ...]:
     """Choose up to `most` of the candidates `T_base_camera` (N, 4, 4), each for what it adds.

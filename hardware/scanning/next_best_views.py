@@ -12,7 +12,7 @@ import numpy as np
 from core.errors import StageError
 from core.geometry import FloatArray
 from core.motion.box_views import is_clear_from_home, near_home
-from core.motion.views import Dome, ReachableView, reachable_views
+from core.motion.views import Dome, ReachableView, ViewTask, reachable_views
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.quality.cavity import find_hidden_cavity
@@ -81,40 +81,40 @@ def propose(cell: Cell, scan: Scan, volume: TsdfVolume, most: int = MOST_VIEWS) 
         volume: all of it, fused (see `object_volume`).
         most: how many.
     """
-    place = cell.settings.place
-    height_m = place.platform_height_m
-    cavity = find_hidden_cavity(volume, height_m)
-    if len(cavity.region) == 0:
+    height_m = cell.settings.place.platform_height_m
+    region = find_hidden_cavity(volume, height_m).region
+    if len(region) == 0:
         return []
-    hidden_m: FloatArray = volume.centers_m(cavity.region)
     camera = _depth_camera(cell, scan)
-    task = replace(
+    task = _task(cell, scan, camera, volume.centers_m(region).mean(axis=0))
+    views = _not_taken(_one_each(near_home(reachable_views(cell.scene, task, INTO_OPENINGS), task)), scan)
+    if not views:
+        return []
+    sparse, sample = sample_of(region, SPARSE_SAMPLE), sample_of(region, SAMPLE)
+    revealed = revealed_voxels(volume, sparse, height_m, _poses(views), camera)
+    best = _best_of_each_direction(views, worth_of(revealed, bottom_of(volume, sparse, height_m)).tolist())
+
+    def can_take(k: int) -> bool:
+        return is_clear_from_home(cell.scene, task, best[k])
+
+    chosen = propose_views(volume, sample, height_m, _poses(best), camera, most, can_take)
+    return [
+        (tuple(best[one.index].joints_rad.tolist()), one.n_revealed_voxels / len(sample)) for one in chosen
+    ]
+
+
+def _task(cell: Cell, scan: Scan, camera: DepthCamera, target_m: FloatArray) -> ViewTask:
+    place = cell.settings.place
+    return replace(
         view_task(cell.settings, np.array(place.crop_min_m), np.array(place.crop_max_m)),
-        target_m=hidden_m.mean(axis=0),
+        target_m=target_m,
         field_of_view_deg=scan.intrinsics.field_of_view_deg((camera.width_px, camera.height_px)),
     )
-    reachable = near_home(reachable_views(cell.scene, task, INTO_OPENINGS), task)
-    different = _not_taken(_one_each(reachable), scan)
-    if not different:
-        return []
-    poses = np.array([view.T_base_camera for view in different])
-    sparse, sample = sample_of(cavity.region, SPARSE_SAMPLE), sample_of(cavity.region, SAMPLE)
-    revealed = revealed_voxels(volume, sparse, height_m, poses, camera)
-    told = worth_of(revealed, bottom_of(volume, sparse, height_m))
-    best = _best_of_each_direction(different, told.tolist())
-    proposed = propose_views(
-        volume,
-        sample,
-        height_m,
-        poses[best],
-        camera,
-        most,
-        lambda k: is_clear_from_home(cell.scene, task, different[best[k]]),
-    )
-    return [
-        (tuple(different[best[p.index]].joints_rad.tolist()), p.n_revealed_voxels / len(sample))
-        for p in proposed
-    ]
+
+
+def _poses(views: list[ReachableView]) -> FloatArray:
+    """`T_base_camera` of each (N, 4, 4)."""
+    return np.array([view.T_base_camera for view in views]).reshape(-1, 4, 4)
 
 
 def _depth_camera(cell: Cell, scan: Scan) -> DepthCamera:
@@ -184,14 +184,14 @@ def _not_taken(views: list[ReachableView], scan: Scan) -> list[ReachableView]:
     return [view for view in views if np.abs(taken - view.T_base_camera).max(axis=(1, 2)).min() > SAME_POSE]
 
 
-def _best_of_each_direction(views: list[ReachableView], worth: list[int]) -> list[int]:
-    """Which view is worth most in each direction; those that are worth nothing are left out."""
-    best: dict[tuple[float, float], int] = {}
-    for k, view in enumerate(views):
+def _best_of_each_direction(views: list[ReachableView], worth: list[int]) -> list[ReachableView]:
+    """The view that is worth most in each direction; those that are worth nothing are left out."""
+    best: dict[tuple[float, float], tuple[int, ReachableView]] = {}
+    for one, view in zip(worth, views, strict=True):
         direction = view.elevation_deg, view.azimuth_deg
-        if worth[k] > 0 and (direction not in best or worth[k] > worth[best[direction]]):
-            best[direction] = k
-    return list(best.values())
+        if one > 0 and (direction not in best or one > best[direction][0]):
+            best[direction] = one, view
+    return [view for _, view in best.values()]
 
 
 def _one_each(views: list[ReachableView]) -> list[ReachableView]:

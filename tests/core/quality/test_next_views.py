@@ -178,4 +178,4 @@ def test_range_and_grazing_angle_limit_what_is_revealed(hidden):
 def test_nothing_hidden_asks_for_no_views(mug_scan):
     volume = coarse_volume(mug_scan, BOX)
     cavity = find_hidden_cavity(volume, PLATFORM_M)
-    assert propose_views(volume, cavity.region, PLATFORM_M, dome(np.zeros(3)), CAMERA) == ()
+    assert propose_views(volume, cavity.region, PLATFORM_M, dome(np.zeros(3)), CAMERA, 6) == ()
