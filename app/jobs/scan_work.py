@@ -115,8 +115,7 @@ class ScanWork(Service):
         Raises:
             PoursightError: there is no scan, or it cannot be read.
         """
-        reporter.progress("looking again", 0, 1)
-        return propose_views(Session.open(task.folder).folder("scan"), cell)
+        return propose_views(Session.open(task.folder).folder("scan"), cell, reporter)
 
     def get_ready(self) -> None:
         """Forget earlier stops; to be ordered before a scan is started."""

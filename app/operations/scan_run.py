@@ -131,9 +131,9 @@ class ScanRun:
         procedure.retake(request.retake)
         self._purpose = _INTO_OPENINGS
         if request.adaptive:
-            take_next_best_views(cell, procedure)
+            take_next_best_views(cell, procedure, self._reporter)
         elif not (request.retake or cell.settings.robot.kind == "replay"):
-            look_inside(cell, procedure, len(plan.views_rad))
+            look_inside(cell, procedure, self._reporter, len(plan.views_rad))
         procedure.scan()  # refuses what is too little for a scan
 
     def _plan(self) -> ScanPlan:

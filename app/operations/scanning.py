@@ -131,25 +131,28 @@ def _open(settings: CellSettings, mesh: TriangleMesh | None, seed: int) -> Cell:
     return open_cell(settings, world, seed)
 
 
-def propose_views(scan_folder: Path, settings: CellSettings) -> Proposal:
+def propose_views(scan_folder: Path, settings: CellSettings, reporter: Reporter) -> Proposal:
     """Choose reachable views that would show more of what a finished scan left hidden; takes up to 15 s.
 
     Args:
         scan_folder: of the scan, taken in this cell.
         settings: the cell; nothing of it is connected.
+        reporter: learns that views are being chosen.
 
     Raises:
         PoursightError: the scan cannot be read.
+        Cancelled: on request.
     """
     from core.scan import read_scan
-    from hardware.scanning.next_best_views import object_volume, propose
+    from hardware.scanning.next_best_views import STAGE, object_volume, propose
     from hardware.scanning.planning import cell_for_plan
     from hardware.scanning.store import read_plan
 
+    reporter.progress(STAGE, 0, 1)
     scan, plan = read_scan(scan_folder, Reporter()), read_plan(scan_folder)
     cell = _unconnected(settings)
     cell = cell if plan is None else cell_for_plan(cell, plan)
-    volume = object_volume(scan)
+    volume = object_volume(scan, reporter)
     proposals = [] if volume is None else propose(cell, scan, volume)
     return Proposal(len(proposals), sum(share for _, share in proposals))
 

@@ -33,6 +33,7 @@ from hardware.cell.scene import view_task
 from hardware.scanning.procedure import ScanProcedure
 from hardware.scanning.views import Joints, ViewState, name_views
 
+STAGE = "looking again"
 MOST_VIEWS = 6
 MOST_VIEWS_FOR_VERDICT = 16
 """More are taken while the verdict hangs on them: while there may be a hole in the bottom, ..."""
@@ -58,14 +59,28 @@ INTO_OPENINGS = Dome(
 views come densely, from afar and with every roll. Below a lid that is half open only flat ones look."""
 
 
-def object_volume(scan: Scan) -> TsdfVolume | None:
+class _Listening(Reporter):
+    """Is cancelled with another one and tells nothing: the reconstruction itself will warn."""
+
+    def __init__(self, other: Reporter) -> None:
+        super().__init__()
+        self._other = other
+
+    def raise_if_cancelled(self) -> None:
+        self._other.raise_if_cancelled()
+
+
+def object_volume(scan: Scan, reporter: Reporter) -> TsdfVolume | None:
     """Fuse a scan as the reconstruction will, which alone knows what it takes for seen; 1 to 4 s.
 
     Plain fusion in coarse voxels takes a few millimetres more behind a wall for solid, and half of a narrow
     mouth. None if there is no object.
+
+    Raises:
+        Cancelled: on request.
     """
     try:
-        return fuse_object(scan, ReconstructionParameters(), Reporter()).volume
+        return fuse_object(scan, ReconstructionParameters(), _Listening(reporter)).volume
     except StageError:
         return None
 
@@ -123,7 +138,7 @@ def _depth_camera(cell: Cell, scan: Scan) -> DepthCamera:
     return DepthCamera(scan.intrinsics, width, height, settings.baseline_m, settings.min_range_m)
 
 
-def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
+def look_inside(cell: Cell, procedure: ScanProcedure, reporter: Reporter, n_own: int) -> int:
     """Take a few views into openings of whose inside the scan left too much unseen; return how many.
 
     Of an interrupted scan those that were chosen already are taken first, and count.
@@ -131,6 +146,7 @@ def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
     Args:
         cell: of the procedure.
         procedure: which has taken the scan's own views.
+        reporter: learns that views are being chosen.
         n_own: how many these are.
 
     Raises:
@@ -140,17 +156,18 @@ def look_inside(cell: Cell, procedure: ScanProcedure, n_own: int) -> int:
         return 0
     chosen_before = procedure.records[n_own:]
     procedure.take([record.view for record in chosen_before if record.state is ViewState.PENDING])
-    return take_next_best_views(cell, procedure, UNSEEN_SHARE, len(chosen_before))
+    return take_next_best_views(cell, procedure, reporter, UNSEEN_SHARE, len(chosen_before))
 
 
 def take_next_best_views(
-    cell: Cell, procedure: ScanProcedure, least_share: float = 0.0, n_before: int = 0
+    cell: Cell, procedure: ScanProcedure, reporter: Reporter, least_share: float = 0.0, n_before: int = 0
 ) -> int:
     """Propose views and take them, a few at a time; return how many.
 
     Args:
         cell: of the procedure.
         procedure: which has taken other views.
+        reporter: learns that views are being chosen.
         least_share: of the inside; while no more of it is unseen, and the unseen is no way through its
             bottom, none is taken.
         n_before: how many such views the scan has already; they count.
@@ -158,7 +175,8 @@ def take_next_best_views(
     n_now = n_before
     if not find_unseen_inside(procedure.volume, cell.settings.place.platform_height_m).region.any():
         return 0
-    while (volume := object_volume(scan := procedure.scan())) is not None:
+    reporter.progress(STAGE, 0, 1)
+    while (volume := object_volume(scan := procedure.scan(), reporter)) is not None:
         most = _most_views(cell, volume, least_share)
         a_round = VIEWS_A_ROUND if n_now < MOST_VIEWS else LATER_VIEWS_A_ROUND
         proposals = propose(cell, scan, volume, min(a_round, most - n_now)) if most > n_now else []
@@ -166,6 +184,7 @@ def take_next_best_views(
             break
         procedure.take(name_views([joints for joints, _ in proposals], first=len(procedure.records)))
         n_now += len(proposals)
+        reporter.progress(STAGE, 0, 1)
     return n_now - n_before
 
 

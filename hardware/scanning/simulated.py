@@ -49,7 +49,7 @@ def simulate_scan(
         planned = cell_for_plan(opened, plan)
         procedure = ScanProcedure(planned, None, reporter)
         procedure.take(name_views(plan.views_rad))
-        look_inside(planned, procedure, len(plan.views_rad))
+        look_inside(planned, procedure, reporter, len(plan.views_rad))
         return procedure.scan()
 
 

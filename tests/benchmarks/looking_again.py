@@ -28,7 +28,7 @@ def main() -> None:
                 procedure.take(name_views(cell.views_rad))
                 before_m = depth_m(procedure.scan())
                 started_s = perf_counter()
-                n_views = take_next_best_views(cell, procedure)
+                n_views = take_next_best_views(cell, procedure, Reporter())
                 took_s = perf_counter() - started_s
                 after_m = depth_m(procedure.scan())
             print(

@@ -6,6 +6,7 @@ import numpy as np
 import open3d as o3d
 import pytest
 
+from core.errors import Cancelled
 from core.mesh import TriangleMesh
 from core.motion.clearance import MotionScene
 from core.parameters.reconstruction import ReconstructionParameters
@@ -16,6 +17,7 @@ from core.scan import Scan
 from hardware.cell import CellSettings, open_cell, read_cell
 from hardware.scanning.next_best_views import (
     MOST_VIEWS,
+    STAGE,
     look_inside,
     object_volume,
     propose,
@@ -59,7 +61,7 @@ def test_a_narrow_vase_goes_from_a_dent_to_its_true_depth():
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
         before_m = depth_m(procedure.scan())
-        n_views = take_next_best_views(cell, procedure)
+        n_views = take_next_best_views(cell, procedure, Reporter())
         after_m = depth_m(procedure.scan())
         joints = np.array([record.view.joints_rad for record in procedure.records])
     assert before_m < DEPTH_M / 2
@@ -74,18 +76,29 @@ def test_nothing_is_proposed_where_everything_was_seen():
     with scanning(builtin_object("bowl"), 0) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad[::2]))
-        assert propose(cell, procedure.scan(), object_volume(procedure.scan())) == []
+        assert propose(cell, procedure.scan(), object_volume(procedure.scan(), Reporter())) == []
 
 
 def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
     with scanning(tube(0.04, DEPTH_M), SEED) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
-        n_views = look_inside(cell, procedure, len(cell.views_rad))
-        n_more = look_inside(cell, procedure, len(cell.views_rad))
+        n_views = look_inside(cell, procedure, Reporter(), len(cell.views_rad))
+        n_more = look_inside(cell, procedure, Reporter(), len(cell.views_rad))
         assert depth_m(procedure.scan()) > DEPTH_M / 2
     assert n_views >= 1
     assert n_views + n_more <= MOST_VIEWS
+
+
+class Heard(Reporter):
+    """Remembers the stages that it was told of."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.stages: set[str] = set()
+
+    def progress(self, stage: str, done: float, total: float) -> None:
+        self.stages.add(stage)
 
 
 def shouldered_jar() -> TriangleMesh:
@@ -100,15 +113,20 @@ def test_what_the_reconstruction_takes_for_unseen_is_looked_at():
     """In coarse voxels a foot of the wall is seen that the reconstruction is not sure of."""
 
     def may_have_a_hole(scan: Scan) -> bool:
-        volume = object_volume(scan)
+        volume = object_volume(scan, Reporter())
         return find_unseen_inside(volume, CELL.place.platform_height_m).way_through(volume) is not None
 
     with scanning(shouldered_jar(), 1) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
         assert may_have_a_hole(procedure.scan())
-        assert look_inside(cell, procedure, len(cell.views_rad)) <= MOST_VIEWS
+        reporter = Heard()
+        assert look_inside(cell, procedure, reporter, len(cell.views_rad)) <= MOST_VIEWS
         assert not may_have_a_hole(procedure.scan())
+        assert reporter.stages == {STAGE}, "the reconstruction's own stages are for later"
+        reporter.cancel()
+        with pytest.raises(Cancelled):
+            object_volume(procedure.scan(), reporter)
 
 
 def test_no_view_is_proposed_that_the_scan_has_already():
@@ -116,7 +134,7 @@ def test_no_view_is_proposed_that_the_scan_has_already():
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
         before = procedure.scan()
-        volume = object_volume(before)
+        volume = object_volume(before, Reporter())
         (first, _), *_ = propose(cell, before, volume)
         procedure.take(name_views([first], first=len(before.frames)))
         taken = procedure.scan().frames[-1]
@@ -131,7 +149,7 @@ def test_a_bottom_that_was_not_seen_is_looked_at_however_little_it_is():
     with scanning(tube(0.04, DEPTH_M), SEED) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
-        assert take_next_best_views(cell, procedure, least_share=1.0) >= 1
+        assert take_next_best_views(cell, procedure, Reporter(), least_share=1.0) >= 1
 
 
 def test_a_scan_does_not_look_inside_where_it_is_told_not_to_or_has_seen_all():
@@ -139,8 +157,8 @@ def test_a_scan_does_not_look_inside_where_it_is_told_not_to_or_has_seen_all():
     with scanning(tube(0.04, DEPTH_M), SEED, CELL.model_copy(update={"scan": scan})) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad[::3]))
-        assert look_inside(cell, procedure, len(procedure.records)) == 0
+        assert look_inside(cell, procedure, Reporter(), len(procedure.records)) == 0
     with scanning(builtin_object("bowl"), 0) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad[::2]))
-        assert look_inside(cell, procedure, len(procedure.records)) == 0
+        assert look_inside(cell, procedure, Reporter(), len(procedure.records)) == 0
