@@ -10,9 +10,10 @@ from core.imagination.capacity.imagine import ARCH, imagine_capacity
 from core.imagination.capacity.result import Capacity
 from core.imagination.drop import imagine_drop
 from core.mesh_topology import join
+from core.parameters.imagination import CapacityParameters
 from core.unseen_readings import UnseenReadings
 from core.workers import RunHere
-from tests.core.imagination.capacity.conftest import open_box
+from tests.core.imagination.capacity.conftest import open_box, turned
 from tests.core.imagination.capacity.test_openings import funnel
 from tests.core.imagination.conftest import box
 from tests.core.imagination.here import here
@@ -108,6 +109,16 @@ def test_of_what_is_no_container_it_is_told_what_stayed(candies, few):
     found = fill(block, candies, few, RunHere())
     assert found.stand_in_diameter_m is not None and not found.is_hollow_told
     assert found.level_ml == found.volume_ml < found.candy_hollow_ml
+
+
+@pytest.mark.system
+def test_balls_do_not_jam_in_a_narrow_mouth(candies):
+    """A bottle of a litre, its mouth 40 mm wide."""
+    inside = [(0.02, 0.2), (0.02, 0.17), (0.045, 0.13), (0.045, 0.003), (0, 0.003)]
+    bottle = turned([(0, 0), (0.048, 0), (0.048, 0.13), (0.023, 0.17), (0.023, 0.2), *inside])
+    filled = fill(CollisionModel.exact(bottle), candies, CapacityParameters(), RunHere())
+    assert filled.candy_hollow_ml > 900
+    assert filled.volume_ml > 0.6 * filled.candy_hollow_ml
 
 
 def test_levels(filled):
