@@ -93,7 +93,7 @@ def test_few_large_balls_in_narrow_hollows_do_not_make_them_smaller(candies, few
     across = [box((k * step, 0, 0), (k * step + wall, y, high)) for k in range(5)]
     along = [box((0, k * step, 0), (x, k * step + wall, high)) for k in range(4)]
     rack = CollisionModel.exact(join([box((0, 0, -wall), (x, y, 0)), *across, *along]))
-    found = fill(rack, candies, few, RunHere())
+    found = fill(rack, candies, few.model_copy(update={"widths_in_mouth": 1.4}), RunHere())
     true_ml = 12 * 36 * 36 * 50 / 1000
     assert found.stand_in_diameter_m is not None and found.volume_ml < 0.85 * true_ml
     assert found.level_ml == pytest.approx(true_ml, rel=0.05)
