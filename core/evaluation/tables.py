@@ -325,13 +325,15 @@ def _measure_lines(evaluation: Evaluation) -> list[str]:
 
 
 def _undecided_lines(evaluation: Evaluation) -> list[str]:
-    """Name the objects of which it cannot be told, where there are any."""
+    """Name the objects of which it cannot be told, where there are any; ambiguous ones count nowhere."""
     lines = []
     for variant in evaluation.variants:
-        names = [one.name for one in evaluation.of_variant(variant) if one.is_undecided]
-        if names:
-            said = f"Cannot tell ({variant}), counted as not right: {', '.join(names)}."
-            lines.append(fill(said, WIDTH, subsequent_indent="  "))
+        undecided = [one for one in evaluation.of_variant(variant) if one.is_undecided]
+        for is_counted, how in ((True, "counted as not right"), (False, "ambiguous, not counted")):
+            names = [one.name for one in undecided if (one.label != "ambiguous") == is_counted]
+            if names:
+                said = f"Cannot tell ({variant}), {how}: {', '.join(names)}."
+                lines.append(fill(said, WIDTH, subsequent_indent="  "))
     return lines
 
 

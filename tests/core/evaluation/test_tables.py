@@ -46,6 +46,16 @@ def test_our_rows_count_as_the_paper_does() -> None:
     assert "98.18 (90.4–99.7)" in text_tables(found)
 
 
+def test_an_ambiguous_object_of_which_it_cannot_be_told_counts_nowhere() -> None:
+    vase, shoe = (
+        replace(trial(name, label, 80), unseen_ml=200.0)
+        for name, label in (("vase", "container"), ("shoe", "ambiguous"))
+    )
+    lines = text_tables(evaluation_of(vase, shoe)).splitlines()
+    told = [line.split(")", 1)[1] for line in lines if line.startswith("Cannot tell (")]
+    assert told == [", counted as not right: vase.", ", ambiguous, not counted: shoe."]
+
+
 def test_pours_are_counted_by_ground_truth_world() -> None:
     worlds = ("bullet", "mujoco", "peanuts")
     clean = trial("mug", "container", 80, worlds=worlds, spilled=(0, 0, 0), in_cup=(0, 0, 0))
