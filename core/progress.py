@@ -38,3 +38,15 @@ class Reporter:
         """Raise `Cancelled` if somebody asked to stop."""
         if self._cancel.is_set():
             raise Cancelled("Stopped on request; finished stages are kept.", Remedy.CONTINUE)
+
+
+class QuietReporter(Reporter):
+    """Is cancelled with another reporter and tells nothing: of work inside a stage that has its own words."""
+
+    def __init__(self, outside: Reporter) -> None:
+        super().__init__()
+        self._outside = outside
+
+    def raise_if_cancelled(self) -> None:
+        """See `Reporter`; it is the one outside who is asked."""
+        self._outside.raise_if_cancelled()

@@ -143,6 +143,7 @@ def propose_views(scan_folder: Path, settings: CellSettings, reporter: Reporter)
         PoursightError: the scan cannot be read.
         Cancelled: on request.
     """
+    from core.reconstruction.unseen import find_unseen_inside
     from core.scan import read_scan
     from hardware.scanning.next_best_views import STAGE, object_volume, propose
     from hardware.scanning.planning import cell_for_plan
@@ -153,7 +154,10 @@ def propose_views(scan_folder: Path, settings: CellSettings, reporter: Reporter)
     cell = _unconnected(settings)
     cell = cell if plan is None else cell_for_plan(cell, plan)
     volume = object_volume(scan, reporter)
-    proposals = [] if volume is None else propose(cell, scan, volume)
+    if volume is None:
+        return Proposal(0, 0.0)
+    unseen = find_unseen_inside(volume, cell.settings.place.platform_height_m)
+    proposals = propose(cell, scan, volume, unseen)
     return Proposal(len(proposals), sum(share for _, share in proposals))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from core.errors import InputError
 from core.motion.box_views import in_short_order, views_clear_from_home
 from core.motion.views import Dome, choose_spread_views
-from core.progress import Reporter
+from core.progress import QuietReporter, Reporter
 from core.quality.object_box import ObjectBox, find_object_box
 from core.scan.model import CropBox, Intrinsics, crop_box
 from hardware.cell import Cell
@@ -68,18 +68,6 @@ def first_look_views(settings: CellSettings) -> tuple[PlannedView, ...]:
     )
 
 
-class _Quiet(Reporter):
-    """Says nothing, for these images are not kept: neither how many there are, nor that one is poor."""
-
-    def __init__(self, outside: Reporter) -> None:
-        super().__init__()
-        self._outside = outside
-
-    def raise_if_cancelled(self) -> None:
-        """See `Reporter`; it is the one outside who is asked."""
-        self._outside.raise_if_cancelled()
-
-
 def look_first(
     cell: Cell,
     views: tuple[PlannedView, ...],
@@ -102,7 +90,7 @@ def look_first(
     """
     settings, space = cell.settings, object_space(cell.settings)
     looking = _watching(cell, space)
-    procedure = ScanProcedure(looking, None, _Quiet(reporter), control, moving=moving_in(looking))
+    procedure = ScanProcedure(looking, None, QuietReporter(reporter), control, moving=moving_in(looking))
     procedure.take(views)
     box = find_object_box(procedure.volume, settings.place.platform_height_m, space)
     if box is not None and not box.is_within(space):

@@ -14,8 +14,7 @@ from core.geometry import FloatArray
 from core.motion.box_views import is_clear_from_home, near_home
 from core.motion.views import Dome, ReachableView, ViewTask, reachable_views
 from core.parameters.reconstruction import ReconstructionParameters
-from core.progress import Reporter
-from core.quality.cavity import find_hidden_cavity
+from core.progress import QuietReporter, Reporter
 from core.quality.next_views import (
     DepthCamera,
     bottom_of,
@@ -26,7 +25,7 @@ from core.quality.next_views import (
 )
 from core.reconstruction.fusion import fuse_object
 from core.reconstruction.tsdf import TsdfVolume
-from core.reconstruction.unseen import find_unseen_inside
+from core.reconstruction.unseen import UnseenInside, find_unseen_inside
 from core.scan.model import Scan
 from hardware.cell import Cell
 from hardware.cell.scene import view_task
@@ -59,17 +58,6 @@ INTO_OPENINGS = Dome(
 views come densely, from afar and with every roll. Below a lid that is half open only flat ones look."""
 
 
-class _Listening(Reporter):
-    """Is cancelled with another one and tells nothing: the reconstruction itself will warn."""
-
-    def __init__(self, other: Reporter) -> None:
-        super().__init__()
-        self._other = other
-
-    def raise_if_cancelled(self) -> None:
-        self._other.raise_if_cancelled()
-
-
 def object_volume(scan: Scan, reporter: Reporter) -> TsdfVolume | None:
     """Fuse a scan as the reconstruction will, which alone knows what it takes for seen; 1 to 4 s.
 
@@ -80,12 +68,14 @@ def object_volume(scan: Scan, reporter: Reporter) -> TsdfVolume | None:
         Cancelled: on request.
     """
     try:
-        return fuse_object(scan, ReconstructionParameters(), _Listening(reporter)).volume
+        return fuse_object(scan, ReconstructionParameters(), QuietReporter(reporter)).volume
     except StageError:
         return None
 
 
-def propose(cell: Cell, scan: Scan, volume: TsdfVolume, most: int = MOST_VIEWS) -> list[tuple[Joints, float]]:
+def propose(
+    cell: Cell, scan: Scan, volume: TsdfVolume, unseen: UnseenInside, most: int = MOST_VIEWS
+) -> list[tuple[Joints, float]]:
     """Return up to `most` views, each with the share of what is hidden that it reveals, best first.
 
     Each has a clear straight way from home, so that it is reached from wherever the arm is.
@@ -94,10 +84,11 @@ def propose(cell: Cell, scan: Scan, volume: TsdfVolume, most: int = MOST_VIEWS) 
         cell: with its arm and obstacles.
         scan: everything that was taken.
         volume: all of it, fused (see `object_volume`).
+        unseen: where the views ended in that volume.
         most: how many.
     """
     height_m = cell.settings.place.platform_height_m
-    region = find_hidden_cavity(volume, height_m).region
+    region = np.argwhere(unseen.in_volume(unseen.region))
     if len(region) == 0:
         return []
     camera = _depth_camera(cell, scan)
@@ -172,14 +163,15 @@ def take_next_best_views(
             bottom, none is taken.
         n_before: how many such views the scan has already; they count.
     """
-    n_now = n_before
-    if not find_unseen_inside(procedure.volume, cell.settings.place.platform_height_m).region.any():
+    n_now, height_m = n_before, cell.settings.place.platform_height_m
+    if not find_unseen_inside(procedure.volume, height_m).region.any():
         return 0
     reporter.progress(STAGE, 0, 1)
     while (volume := object_volume(scan := procedure.scan(), reporter)) is not None:
-        most = _most_views(cell, volume, least_share)
+        unseen = find_unseen_inside(volume, height_m)
+        most = _most_views(volume, unseen, least_share)
         a_round = VIEWS_A_ROUND if n_now < MOST_VIEWS else LATER_VIEWS_A_ROUND
-        proposals = propose(cell, scan, volume, min(a_round, most - n_now)) if most > n_now else []
+        proposals = propose(cell, scan, volume, unseen, min(a_round, most - n_now)) if most > n_now else []
         if not proposals:
             break
         procedure.take(name_views([joints for joints, _ in proposals], first=len(procedure.records)))
@@ -188,9 +180,8 @@ def take_next_best_views(
     return n_now - n_before
 
 
-def _most_views(cell: Cell, volume: TsdfVolume, least_share: float) -> int:
+def _most_views(volume: TsdfVolume, unseen: UnseenInside, least_share: float) -> int:
     """How many views are worth taking: most where the verdict hangs on what was not seen."""
-    unseen = find_unseen_inside(volume, cell.settings.place.platform_height_m)
     share = unseen.room_share(volume.voxel_m)
     if share > MOSTLY_UNSEEN_SHARE or unseen.way_through(volume) is not None:
         return MOST_VIEWS_FOR_VERDICT

@@ -56,6 +56,11 @@ def depth_m(scan: Scan) -> float:
     return float(np.median(scene.cast_rays(o3d.core.Tensor(rays.astype(np.float32)))["t_hit"].numpy()))
 
 
+def proposed(cell, scan: Scan) -> list:
+    volume = object_volume(scan, Reporter())
+    return propose(cell, scan, volume, find_unseen_inside(volume, CELL.place.platform_height_m))
+
+
 def test_a_narrow_vase_goes_from_a_dent_to_its_true_depth():
     with scanning(tube(0.04, DEPTH_M), SEED) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
@@ -76,7 +81,7 @@ def test_nothing_is_proposed_where_everything_was_seen():
     with scanning(builtin_object("bowl"), 0) as cell:
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad[::2]))
-        assert propose(cell, procedure.scan(), object_volume(procedure.scan(), Reporter())) == []
+        assert proposed(cell, procedure.scan()) == []
 
 
 def test_a_scan_looks_into_a_narrow_vase_by_itself_and_not_for_ever():
@@ -134,14 +139,13 @@ def test_no_view_is_proposed_that_the_scan_has_already():
         procedure = ScanProcedure(cell, None, Reporter())
         procedure.take(name_views(cell.views_rad))
         before = procedure.scan()
-        volume = object_volume(before, Reporter())
-        (first, _), *_ = propose(cell, before, volume)
+        (first, _), *_ = proposed(cell, before)
         procedure.take(name_views([first], first=len(before.frames)))
         taken = procedure.scan().frames[-1]
         in_vain = replace(
             before, frames=(*before.frames, replace(taken, depth_m=np.zeros_like(taken.depth_m)))
         )
-        again = [joints for joints, _ in propose(cell, in_vain, volume)]
+        again = [joints for joints, _ in proposed(cell, in_vain)]
     assert first not in again and len(again) > 0
 
 
