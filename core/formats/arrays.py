@@ -29,6 +29,8 @@ _HOLLOWS: _Spec = {
     "hollow_rim_m": ("float", ("X", "Y")),
     "hollow_floor_m": ("float", ("X", "Y")),
 }
+_OPEN_HOLLOWS: _Spec = {"hollow_is_open": ("bool", ("X", "Y"))}
+"""Not in sessions of earlier versions."""
 _HOLDING: _Spec = {
     "tilt_rad": ("float", ("S",)),
     "direction_rad": ("float", ("D",)),
@@ -90,7 +92,7 @@ def check_arrays(path: Path, arrays: Mapping[str, AnyArray]) -> None:
     if path.name == "capacity.npz" and "time_s" in arrays:
         _check(arrays, _RECORDING)
     if path.name == "capacity.npz" and "hollow_pitch_m" in arrays:
-        _check(arrays, _HOLLOWS)
+        _check(arrays, {**_HOLLOWS, **_OPEN_HOLLOWS} if "hollow_is_open" in arrays else _HOLLOWS)
         if arrays["hollow_pitch_m"] <= 0:
             raise ValueError("the pitch of the hollows is not above zero")
     for prefix in sorted({match[1] for name in arrays if (match := _POUR.fullmatch(name))}):

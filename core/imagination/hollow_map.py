@@ -24,12 +24,15 @@ class HollowMap:
         pitch_m: of the places.
         rim_m: (X, Y) height over which something runs that is held there; minus infinity where nothing is.
         floor_m: (X, Y) height of the lowest that is held there; infinity where nothing is.
+        is_open: (X, Y) whether nothing of the object lies above what is held there: what falls straight
+            down comes in, not onto the shoulder of a bottle.
     """
 
     origin_m: FloatArray
     pitch_m: float
     rim_m: FloatArray
     floor_m: FloatArray
+    is_open: BoolArray
 
     def rim_at(self, places_m: FloatArray) -> FloatArray:
         """Return (n,) heights of the rims at (n, 2) places; minus infinity where nothing is held, or NaN."""
@@ -49,9 +52,9 @@ class HollowMap:
         return held
 
     def room_at(self, places_m: FloatArray) -> FloatArray:
-        """Return (n,) distances of (n, 2) places from the nearest one where nothing is held; there, zero."""
+        """Return (n,) distances of (n, 2) places from the nearest one that is not open; there, zero."""
         i, j = self._nearest(places_m)
-        rooms: FloatArray = self._room_m[i, j]
+        rooms: FloatArray = self.room_m[i, j]
         return rooms
 
     def to_arrays(self) -> dict[str, AnyArray]:
@@ -62,26 +65,29 @@ class HollowMap:
             "hollow_origin_m": self.origin_m,
             "hollow_pitch_m": np.array(self.pitch_m),
             "hollow_holds": holds,
+            "hollow_is_open": self.is_open,
             "hollow_rim_m": rim_m.astype(np.float32),
             "hollow_floor_m": floor_m.astype(np.float32),
         }
 
     @staticmethod
     def from_arrays(arrays: Mapping[str, AnyArray]) -> HollowMap:
-        """Make one from its arrays."""
+        """Make one from its arrays; in sessions of earlier versions all that holds counts as open."""
         holds = arrays["hollow_holds"]
         return HollowMap(
             origin_m=arrays["hollow_origin_m"],
             pitch_m=float(arrays["hollow_pitch_m"]),
             rim_m=np.where(holds, arrays["hollow_rim_m"], -np.inf).astype(float),
             floor_m=np.where(holds, arrays["hollow_floor_m"], np.inf).astype(float),
+            is_open=arrays.get("hollow_is_open", holds),
         )
 
     @cached_property
-    def _room_m(self) -> FloatArray:
+    def room_m(self) -> FloatArray:
+        """(X, Y) distance of each place from the nearest one that is not open; there, zero."""
         from scipy.ndimage import distance_transform_edt  # not in the window
 
-        rooms: FloatArray = self.pitch_m * distance_transform_edt(np.isfinite(self.rim_m))
+        rooms: FloatArray = self.pitch_m * distance_transform_edt(self.is_open)
         return rooms
 
     def keeps(self, positions_m: FloatArray, speeds_m_s: FloatArray) -> BoolArray:

@@ -151,7 +151,9 @@ def capacity() -> Capacity:
     found = Capacity(
         21.0, 0.5, 17.0, 1.5, 18.0, 17.5, 1.0, *fillings, 0.04, 0.03, "", *curve, 1.2, recording(30)
     )
-    hollows = HollowMap(np.zeros(2), 0.01, np.full((3, 2), 0.04), np.full((3, 2), 0.01))
+    hollows = HollowMap(
+        np.zeros(2), 0.01, np.full((3, 2), 0.04), np.full((3, 2), 0.01), np.ones((3, 2), dtype=bool)
+    )
     return replace(found, hollows=hollows)
 
 

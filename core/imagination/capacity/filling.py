@@ -284,8 +284,8 @@ _LEAST = 4
 def rain_places(basin: Basin, footprint_m: FloatArray, radius_m: float, apart_m: float) -> FloatArray:
     """Return (n, 2) places above a hollow and near the footprint, where a particle falls clear of the rim.
 
-    What falls onto the rim bounces off and would look as if the object had run over. Without a hollow it
-    rains on the footprint as it is.
+    What falls onto the rim, or onto the shoulder of a bottle, bounces off and would look as if the object had
+    run over. Without an open hollow it rains on the footprint as it is.
 
     Args:
         basin: what the object holds by geometry.
@@ -293,12 +293,10 @@ def rain_places(basin: Basin, footprint_m: FloatArray, radius_m: float, apart_m:
         radius_m: of what rains.
         apart_m: distance of neighbours in the drop's grid.
     """
-    from scipy.ndimage import distance_transform_edt
     from scipy.spatial import cKDTree
 
     seen = basin.hollow_map
-    is_hollow = np.isfinite(seen.rim_m)
-    cells = np.argwhere(is_hollow)
+    cells = np.argwhere(seen.is_open)
     if not len(cells):
         return footprint_m
     places = seen.origin_m + seen.pitch_m * cells
@@ -306,7 +304,7 @@ def rain_places(basin: Basin, footprint_m: FloatArray, radius_m: float, apart_m:
     near: BoolArray = np.asarray(away_m) <= apart_m
     if not near.any():
         return footprint_m
-    places, room_m = places[near], seen.pitch_m * distance_transform_edt(is_hollow)[is_hollow][near]
+    places, room_m = places[near], seen.room_m[seen.is_open][near]
     enough_m = min(radius_m, float(np.sort(room_m)[-min(_LEAST, len(room_m))]))
     clear: FloatArray = places[room_m >= enough_m]
     return clear

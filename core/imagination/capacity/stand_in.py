@@ -12,8 +12,8 @@ from core.parameters.bodies import ContactParameters, ParticleParameters, Solver
 _BALL_SUBSTEPS = 2
 """A ball is seen by a wall until its centre is through it, which is long after a hull is lost."""
 _LEAST_RATE_HZ = 120
-_MOST_FOR_MOUTH = 4.0
-"""Times the balls aimed at that a narrow mouth may lead to: with fewer and larger ones they jam in it."""
+_MOST_FOR_MOUTH = 1.5
+"""Times the balls aimed at that a narrow mouth may lead to: then they become larger than it would like."""
 
 
 @dataclass(frozen=True)

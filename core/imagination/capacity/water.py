@@ -59,11 +59,13 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
 
 
 def _map(lattice: Lattice, held: BoolArray, rims_m: FloatArray) -> HollowMap:
+    is_open: BoolArray = np.any(held & ~lattice.below_surface(), axis=2)
     return HollowMap(
         origin_m=lattice.origin_m[:2],
         pitch_m=float(lattice.pitch_m[0]),
         rim_m=np.where(held, rims_m, -np.inf).max(axis=2),
         floor_m=np.where(held, lattice.heights_m, np.inf).min(axis=2),
+        is_open=is_open,
     )
 
 
@@ -217,6 +219,11 @@ class Lattice:
         after = [self.before(axis) for axis in range(3)]
         beside: BoolArray = np.any([*self.parted, *after], axis=0)
         return beside
+
+    def below_surface(self) -> BoolArray:
+        """(X, Y, Z) points with a face anywhere above them."""
+        below: BoolArray = np.logical_or.accumulate(self.parted[2, :, :, ::-1], axis=2)[:, :, ::-1]
+        return below
 
     def before(self, axis: int) -> BoolArray:
         """(X, Y, Z) points with a face between them and the one before; no face lies behind the last one."""

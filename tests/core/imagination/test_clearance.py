@@ -24,7 +24,7 @@ def box() -> HollowMap:
     inside = (cells >= 0) & (cells <= 60)
     held = inside[:, None] & inside[None, :]
     return HollowMap(
-        np.array([-0.02, -0.02]), PITCH_M, np.where(held, RIM_M, -np.inf), np.where(held, 0.05, np.inf)
+        np.array([-0.02, -0.02]), PITCH_M, np.where(held, RIM_M, -np.inf), np.where(held, 0.05, np.inf), held
     )
 
 

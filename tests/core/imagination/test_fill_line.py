@@ -60,6 +60,13 @@ def test_a_map_is_kept_in_a_file(hollows, tmp_path):
     np.testing.assert_allclose(again.floor_m, hollows.floor_m, atol=1e-6)
     np.testing.assert_array_equal(again.origin_m, hollows.origin_m)
     assert again.pitch_m == hollows.pitch_m
+    np.testing.assert_array_equal(again.is_open, hollows.is_open)
+
+
+def test_in_a_map_of_an_earlier_version_all_that_holds_is_open(hollows):
+    arrays = {name: array for name, array in hollows.to_arrays().items() if name != "hollow_is_open"}
+    again = HollowMap.from_arrays(arrays)
+    np.testing.assert_array_equal(again.is_open, np.isfinite(hollows.rim_m))
 
 
 @pytest.mark.parametrize(
@@ -68,10 +75,13 @@ def test_a_map_is_kept_in_a_file(hollows, tmp_path):
         ("hollow_pitch_m", np.array(0.0), "pitch"),
         ("hollow_rim_m", np.zeros((1, 1)), "another shape"),
         ("hollow_floor_m", np.full((3, 2), np.nan), "NaN"),
+        ("hollow_is_open", np.zeros((1, 1), dtype=bool), "another shape"),
     ],
 )
 def test_a_damaged_map_is_refused(name, value, said):
-    hollows = HollowMap(np.zeros(2), 0.01, np.full((3, 2), 0.04), np.full((3, 2), 0.01))
+    hollows = HollowMap(
+        np.zeros(2), 0.01, np.full((3, 2), 0.04), np.full((3, 2), 0.01), np.ones((3, 2), dtype=bool)
+    )
     arrays = {"heights_m": np.zeros(2), "volumes_ml": np.zeros(2), **hollows.to_arrays()}
     path = Path("judgement") / "capacity.npz"
     check_arrays(path, arrays)

@@ -93,7 +93,7 @@ def test_few_large_balls_in_narrow_hollows_do_not_make_them_smaller(candies, few
     across = [box((k * step, 0, 0), (k * step + wall, y, high)) for k in range(5)]
     along = [box((0, k * step, 0), (x, k * step + wall, high)) for k in range(4)]
     rack = CollisionModel.exact(join([box((0, 0, -wall), (x, y, 0)), *across, *along]))
-    found = fill(rack, candies, few.model_copy(update={"widths_in_mouth": 1.4}), RunHere())
+    found = fill(rack, candies, few, RunHere())
     true_ml = 12 * 36 * 36 * 50 / 1000
     assert found.stand_in_diameter_m is not None and found.volume_ml < 0.85 * true_ml
     assert found.level_ml == pytest.approx(true_ml, rel=0.05)
@@ -112,13 +112,13 @@ def test_of_what_is_no_container_it_is_told_what_stayed(candies, few):
 
 
 @pytest.mark.system
-def test_balls_do_not_jam_in_a_narrow_mouth(candies):
-    """A bottle of a litre, its mouth 40 mm wide."""
+def test_it_rains_into_a_mouth_not_onto_the_shoulder_around_it(candies):
+    """A bottle of a litre, its mouth 40 mm wide: what rolls off outside does not mean that it runs over."""
     inside = [(0.02, 0.2), (0.02, 0.17), (0.045, 0.13), (0.045, 0.003), (0, 0.003)]
     bottle = turned([(0, 0), (0.048, 0), (0.048, 0.13), (0.023, 0.17), (0.023, 0.2), *inside])
     filled = fill(CollisionModel.exact(bottle), candies, CapacityParameters(), RunHere())
     assert filled.candy_hollow_ml > 900
-    assert filled.volume_ml > 0.6 * filled.candy_hollow_ml
+    assert filled.volume_ml > 0.9 * filled.candy_hollow_ml
 
 
 def test_levels(filled):

@@ -46,15 +46,6 @@ def test_balls_stand_for_candies_where_these_are_too_many(candies):
     assert 1 < narrow.scale < wide.scale, "a mouth has to let them pass"
 
 
-@pytest.mark.parametrize(("mouth_m", "widths"), [(0.055, 2.5), (0.04, 2.2)])
-def test_a_narrow_mouth_gets_more_and_smaller_balls(candies, mouth_m, widths):
-    """Of a litre, through a mouth in which balls of the usual size would jam."""
-    n_candies = 1000
-    ball = stand_in_for(n_candies, mouth_m, candies)
-    assert mouth_m / ball.particle.diameter_m >= widths
-    assert n_candies / ball.scale**3 <= 4.01 * candies.capacity.n_aimed
-
-
 def test_it_overflows_when_the_last_candies_do_not_add_up():
     assert not overflows([(10, 10)], 8)
     assert not overflows([(10, 10), (20, 15)], 8)

@@ -56,6 +56,12 @@ def test_a_belly_wider_than_its_mouth_is_filled_under_its_shoulder():
     basin = basin_of(jar)
     assert basin.water_ml == pytest.approx(true, rel=0.02)
     assert basin.mouth_m == pytest.approx(0.056, rel=0.1)
+    seen = basin.hollow_map
+    # As wide as its mouth, and the middle of it as far from the edge; held, though, under the shoulder, too.
+    assert seen.is_open.sum() * seen.pitch_m**2 == pytest.approx(np.pi * 0.028**2, rel=0.1)
+    middle, below_shoulder = np.array([[0.0, 0.0]]), np.array([[0.04, 0.0]])
+    assert seen.room_at(middle)[0] == pytest.approx(0.028, abs=0.002)
+    assert seen.room_at(below_shoulder)[0] == 0 and np.isfinite(seen.rim_at(below_shoulder)[0])
 
 
 def test_a_tube_open_below_and_an_upturned_cup_hold_nothing():
