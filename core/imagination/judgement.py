@@ -10,7 +10,13 @@ from core.collision import CollisionModel
 from core.files import read_json, write_json
 from core.imagination.capacity.filled import fill_beside
 from core.imagination.capacity.finding import find_ahead
-from core.imagination.capacity.imagine import bulk_share, hull_share, imagine_capacity, with_hidden
+from core.imagination.capacity.imagine import (
+    enclosed_share,
+    hull_share,
+    imagine_capacity,
+    imagine_filling,
+    with_hidden,
+)
 from core.imagination.capacity.result import CAPACITY_FILE, Capacity
 from core.imagination.context import ImaginationContext
 from core.imagination.drop import imagine_drop
@@ -74,7 +80,7 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
         fill_beside(_filling_once(context), leaky, drop)
     capacity = imagine_capacity(context, model, drop)
     verdict = Verdict(
-        hull_share(model.surface, capacity.bulk_ml),
+        enclosed_share(model.surface, capacity),
         settings.capacity_threshold,
         capacity.n_candies,
         float(capacity.bulk_ml),
@@ -88,7 +94,7 @@ def judge(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Jud
     if not verdict.is_container:
         verdict = _read_roomy(context, model, verdict)
     elif leaky is not None and model.unseen is not None:
-        share = capacity_share(_filling_once(context), leaky, drop)
+        share = hull_share(leaky.surface, imagine_filling(_filling_once(context), leaky, drop).bulk_ml)
         verdict = replace(verdict, unseen_ml=model.unseen.unseen_ml, other_share=share)
     if verdict.is_container or verdict.is_undecided:
         capacity = with_hidden(context, model, capacity)
@@ -106,7 +112,8 @@ def _leaky_body(model: CollisionModel) -> CollisionModel | None:
     """What a container is as well, as far as anybody saw: it may have a hole in its bottom.
 
     Most objects of which nobody saw the bottom are containers if it is closed. What rains into the hole is
-    what stayed of the drop on the closed one.
+    what stayed of the drop on the closed one. What stays of it counts even with no rim all around: whether
+    there is a hole at all is not known.
     """
     leaky = None if model.unseen is None else model.unseen.leaky
     return None if leaky is None else CollisionModel.exact(leaky)
@@ -132,4 +139,4 @@ def capacity_share(context: ImaginationContext, model: CollisionModel, drop: Dro
     """Return the `capacity_share` of the verdict that `judge` reaches."""
     if drop.footprint is None:
         return 0.0
-    return bulk_share(context, model, drop)
+    return enclosed_share(model.surface, imagine_filling(context, model, drop))

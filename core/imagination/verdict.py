@@ -14,7 +14,8 @@ class Verdict:
 
     Attributes:
         capacity_share: bulk volume of the candies that stay in it, filled until it ran over and then
-            perturbed, as a share of the volume of its convex hull: how much of it is room that holds.
+            perturbed, as a share of the volume of its convex hull: how much of it is room that holds. Zero
+            where not one of them lies below a rim (docs/decisions/0059).
         threshold: `capacity_share` above which it is an open container.
         n_candies: the same in candies.
         volume_ml: the same in ml.

@@ -93,11 +93,18 @@ def between_ml(volume_ml: float, basin: Basin, error_m: float, is_thin: bool) ->
     return float(max(volume_ml - _INWARDS * shift_ml, 0.0)), float(volume_ml + outwards * shift_ml)
 
 
-def bulk_share(context: ImaginationContext, model: CollisionModel, drop: Drop) -> float:
-    """Return what stays in an object as a share of its convex hull's volume, and nothing else of it."""
+def imagine_filling(context: ImaginationContext, model: CollisionModel, drop: Drop) -> Capacity:
+    """Return what stays in an object, without what a scan leaves open and which candies are too small."""
     basin = basin_of(context, model.surface, context.parameters.particle.diameter_m)
-    found = _told(context, model, fill(context, model, drop, basin))
-    return hull_share(model.surface, found.bulk_ml)
+    return _told(context, model, fill(context, model, drop, basin))
+
+
+def enclosed_share(surface: TriangleMesh, found: Capacity) -> float:
+    """Return what stays as a share of the convex hull's volume; zero if not one candy lies below a rim.
+
+    Friction alone holds a heap where nothing is closed all around (decision 0059).
+    """
+    return hull_share(surface, found.bulk_ml) if found.candy_hollow_ml > 0 else 0.0
 
 
 def _told(context: ImaginationContext, model: CollisionModel, filled: Filled) -> Capacity:

@@ -9,6 +9,7 @@ from core.mesh_topology import join
 from core.parameters import apply_settings
 from core.pipeline.in_memory import imagine
 from core.progress import Reporter
+from core.report.sentences import verdict_sentence
 from core.unseen_readings import UnseenReadings
 from core.workers import RunHere
 from tests.core.imagination.conftest import box
@@ -188,3 +189,15 @@ def test_a_drop_that_was_made_ahead_is_that_of_its_surface_and_parameters(dish, 
     assert ahead.of(dish.surface, few) is drop
     assert ahead.of(dish.surface, others) is None
     assert ahead.of(dish.surface.translated([0.0, 0.0, 0.0]), few) is None
+
+
+def test_a_gutter_is_none_though_candies_lie_heaped_in_it(few, pool):
+    """Two walls on a floor, open at both ends: more than a tenth of its bulk stays, by friction alone."""
+    sides = [box((-0.09, -0.033, 0), (0.09, -0.03, 0.03)), box((-0.09, 0.03, 0), (0.09, 0.033, 0.03))]
+    gutter = CollisionModel.exact(join([box((-0.09, -0.033, -0.003), (0.09, 0.033, 0)), *sides]))
+    found = imagine(gutter, few, pool, Reporter())
+    verdict = found.containability.verdict
+    assert found.capacity.bulk_ml > verdict.threshold * 180 * 66 * 33 / 1000
+    assert verdict.capacity_share == 0 and not verdict.is_container and not verdict.is_undecided
+    assert "with no closed rim around them" in verdict_sentence(found.containability)
+    assert found.grid is None
