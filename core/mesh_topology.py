@@ -24,12 +24,15 @@ class Topology:
         n_open: edges of one face only: the border of a hole.
         n_crowded: edges of more than two faces: what makes a mesh non-manifold.
         is_consistent: no two neighbouring faces are wound against each other.
+        euler: vertices less edges plus faces: 2 of a closed surface in one piece, and two less for each
+            handle, hole through it, or pinhole in its wall.
     """
 
     n_edges: int
     n_open: int
     n_crowded: int
     is_consistent: bool
+    euler: int
 
     @property
     def is_closed(self) -> bool:
@@ -53,6 +56,7 @@ def topology(mesh: TriangleMesh) -> Topology:
         n_open=int((shared_by == 1).sum()),
         n_crowded=int((shared_by > 2).sum()),
         is_consistent=not np.isin(twice_keys, keys[shared_by == 2]).any(),
+        euler=len(np.unique(mesh.faces)) - len(keys) + len(mesh.faces),
     )
 
 

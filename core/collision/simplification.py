@@ -7,7 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from core.collision.hollows import Hollows
 from core.mesh import SurfaceDistance, TriangleMesh
+from core.mesh_topology import topology
 
 MAX_MEAN_DEVIATION_M = 0.0005
 MAX_USUAL_DEVIATION_M = 0.0012
@@ -20,6 +22,8 @@ _AGGRESSIVENESS = 3
 _MOST = 4
 """Times the wanted faces that nearness alone is worth: Bullet's time grows with them."""
 _N_SAMPLES = 20_000
+_LEAST_EULER = -2
+"""Of a closed surface with two handles; one with less has gaps, or is a sieve."""
 
 
 def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
@@ -30,13 +34,19 @@ def simplify(mesh: TriangleMesh, max_faces: int) -> TriangleMesh:
     mesh's vertices end up more than 0.5 mm from the new surface on average, more faces are kept. Up to four
     times as many are, too, where one vertex in a hundred is more than 1.2 mm from it: thin walls suffer, and
     their pinholes grow, before the average tells. A rough surface never gets there, and needs not.
-    The two sides of a thin wall may meet in an edge of four faces.
+    As many more as it takes are kept where a gap in a thin wall would grow until the surface no longer holds
+    what it held (decision 0060). The two sides of a thin wall may meet in an edge of four faces.
     """
     fine = simplify_finely(mesh, max_faces)
+    if len(fine.faces) <= max_faces:
+        return fine
+    # What has a handle or two has no gap that could grow.
+    held = Hollows.of(fine) if topology(fine).euler < _LEAST_EULER else None
 
     def serves(coarse: TriangleMesh, n_faces: int) -> bool:
         deviation = _deviation(mesh, coarse)
-        return deviation.is_near or (deviation.is_in_shape and n_faces * _RELENT > _MOST * max_faces)
+        is_near = deviation.is_near or (deviation.is_in_shape and n_faces * _RELENT > _MOST * max_faces)
+        return is_near and (held is None or held.are_kept_by(coarse))
 
     return _decimated(fine, max_faces, serves)
 

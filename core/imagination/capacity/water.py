@@ -5,22 +5,18 @@ Imported by workers alone, for it loads numba.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import ceil, pi
 
-import numba
 import numpy as np
 
 from core.geometry import BoolArray, FloatArray, IntArray
 from core.imagination.capacity.basin import ML, Basin
 from core.imagination.capacity.stand_in import NOWHERE, Surroundings
 from core.imagination.hollow_map import HollowMap
+from core.lattice import FLATNESS, Lattice, held_centers, lattice_of, spill_layers
 from core.mesh import TriangleMesh
 from core.voxel_groups import large_groups
 
-FLATNESS = 0.5
-"""Pitch along z relative to that across: a rim's height decides more than a wall's place."""
-_FINEST_M = 0.0005
 _MOUTH_LAYERS = 12
 _NEAR = 1.5
 """Water within so many half thicknesses of a candy's centre is where candies are."""
@@ -38,8 +34,7 @@ def find_basin(mesh: TriangleMesh, thickness_m: float, smallest_ml: float, point
         smallest_ml: of a hollow that counts.
         points: of the lattice, about; the result's error goes with its pitch.
     """
-    pitch = lattice_pitch_m(mesh, points)
-    lattice = lattice_around(mesh, pitch, FLATNESS * pitch, thickness_m)
+    lattice = lattice_of(mesh, points, thickness_m)
     layers = np.arange(lattice.shape[2])
     spill = spill_layers(lattice, np.zeros(lattice.shape, dtype=np.bool_))
     water = large_groups(spill > layers, smallest_ml / ML / lattice.cell_m3)
@@ -69,12 +64,6 @@ def _map(lattice: Lattice, held: BoolArray, rims_m: FloatArray) -> HollowMap:
     )
 
 
-def lattice_pitch_m(mesh: TriangleMesh, points: int) -> float:
-    """Return the pitch across of a lattice of about so many points; along z it is `FLATNESS` of it."""
-    pitch: float = (float(np.prod(mesh.extents_m)) / FLATNESS / points) ** (1 / 3)
-    return max(pitch, _FINEST_M)
-
-
 def _candies(
     lattice: Lattice, water: BoolArray, radius_m: float, fewest: float
 ) -> tuple[BoolArray, FloatArray]:
@@ -82,13 +71,10 @@ def _candies(
     from scipy.ndimage import distance_transform_edt
 
     pitch = lattice.pitch_m.tolist()
-    layers = np.arange(lattice.shape[2])
-    taken = distance_transform_edt(~lattice.beside_surface(), sampling=pitch) < radius_m
-    spill = spill_layers(lattice, taken)
-    centres = (spill > layers) & ~taken
-    if not centres.any():
-        return centres, np.full(lattice.shape, -np.inf)
-    away, nearest = distance_transform_edt(~centres, sampling=pitch, return_indices=True)
+    centers, spill = held_centers(lattice, radius_m)
+    if not centers.any():
+        return centers, np.full(lattice.shape, -np.inf)
+    away, nearest = distance_transform_edt(~centers, sampling=pitch, return_indices=True)
     # A sphere runs over when its centre is its radius above the rim.
     rims_m = lattice.heights_m[spill[tuple(nearest)]] - radius_m - pitch[2] / 2
     below_rim = lattice.heights_m < rims_m
@@ -175,172 +161,3 @@ def _mouth_m(lattice: Lattice, held: BoolArray) -> float:
     used = used[: max(len(used) - 1, 1)]  # the uppermost may be cut by a slanting rim
     layers = used[:: max(len(used) // _MOUTH_LAYERS, 1)]
     return float(min(2 * distance_transform_edt(held[:, :, k]).max() for k in layers) * lattice.pitch_m[0])
-
-
-_MARGIN = 2
-"""Points beyond the mesh on each side, which are outside."""
-_EDGE_SLACK = 1e-9
-"""Share of a face by which a line may miss it: no line slips between two faces."""
-
-
-@dataclass(frozen=True)
-class Lattice:
-    """Points (i, j, k) at `origin_m + pitch_m * (i, j, k)`, i < X, j < Y, k < Z.
-
-    Attributes:
-        origin_m: (3,).
-        pitch_m: (3,) distance of neighbours along each axis.
-        parted: (3, X, Y, Z) whether a face lies between a point and the next one along x, y, z.
-    """
-
-    origin_m: FloatArray
-    pitch_m: FloatArray
-    parted: BoolArray
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """(X, Y, Z)."""
-        _, n_x, n_y, n_z = self.parted.shape
-        return n_x, n_y, n_z
-
-    @property
-    def cell_m3(self) -> float:
-        """Volume that a point stands for."""
-        return float(np.prod(self.pitch_m))
-
-    @property
-    def heights_m(self) -> FloatArray:
-        """(Z,) heights of the layers."""
-        heights: FloatArray = self.origin_m[2] + self.pitch_m[2] * np.arange(self.shape[2])
-        return heights
-
-    def beside_surface(self) -> BoolArray:
-        """(X, Y, Z) points with a face between them and a neighbour."""
-        after = [self.before(axis) for axis in range(3)]
-        beside: BoolArray = np.any([*self.parted, *after], axis=0)
-        return beside
-
-    def below_surface(self) -> BoolArray:
-        """(X, Y, Z) points with a face anywhere above them."""
-        below: BoolArray = np.logical_or.accumulate(self.parted[2, :, :, ::-1], axis=2)[:, :, ::-1]
-        return below
-
-    def before(self, axis: int) -> BoolArray:
-        """(X, Y, Z) points with a face between them and the one before; no face lies behind the last one."""
-        return np.roll(self.parted[axis], 1, axis=axis)
-
-
-def lattice_around(mesh: TriangleMesh, pitch_m: float, pitch_z_m: float, above_m: float) -> Lattice:
-    """Lay a lattice around a mesh, from half a pitch below it to at least `above_m` above it."""
-    pitch = np.array([pitch_m, pitch_m, pitch_z_m])
-    counts = np.ceil((mesh.extents_m + np.array([0, 0, above_m])) / pitch).astype(np.int64) + 2 * _MARGIN
-    middle = (mesh.aabb_min_m + mesh.aabb_max_m) / 2
-    origin = middle - pitch * (counts - 1) / 2
-    origin[2] = mesh.aabb_min_m[2] - pitch_z_m / 2
-    parted = np.zeros((3, *counts.tolist()), dtype=np.bool_)
-    points = (mesh.vertices_m - origin) / pitch
-    for axis in range(3):
-        across = np.roll(np.arange(3), -axis)[1:]
-        order = np.array([axis, *across])
-        moved = parted[axis].transpose(order)
-        _part(np.ascontiguousarray(points[:, order]), mesh.faces, moved, _EDGE_SLACK)
-    return Lattice(origin, pitch, parted)
-
-
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _part(points: FloatArray, faces: IntArray, parted: BoolArray, slack: float) -> None:
-    """Mark in `parted` (A, B, C) where faces cut the lines along the first axis; `points` in pitches."""
-    last_a, last_b, last_c = parted.shape[0] - 2, parted.shape[1] - 1, parted.shape[2] - 1
-    for face in range(len(faces)):
-        p, q, r = points[faces[face, 0]], points[faces[face, 1]], points[faces[face, 2]]
-        area = (q[1] - p[1]) * (r[2] - p[2]) - (q[2] - p[2]) * (r[1] - p[1])
-        if area == 0.0:
-            continue  # seen edge on: its neighbours part what it would
-        b_from, b_to = max(np.ceil(min(p[1], q[1], r[1])), 0), min(np.floor(max(p[1], q[1], r[1])), last_b)
-        c_from, c_to = max(np.ceil(min(p[2], q[2], r[2])), 0), min(np.floor(max(p[2], q[2], r[2])), last_c)
-        for b in range(int(b_from), int(b_to) + 1):
-            for c in range(int(c_from), int(c_to) + 1):
-                u = ((q[1] - b) * (r[2] - c) - (q[2] - c) * (r[1] - b)) / area
-                v = ((r[1] - b) * (p[2] - c) - (r[2] - c) * (p[1] - b)) / area
-                w = 1 - u - v
-                if u >= -slack and v >= -slack and w >= -slack:
-                    a = int(np.floor(u * p[0] + v * q[0] + w * r[0]))
-                    if 0 <= a <= last_a:
-                        parted[a, b, c] = True
-
-
-NEVER = -1
-"""Spill layer of what water cannot reach, or that is taken."""
-
-
-def spill_layers(lattice: Lattice, taken: BoolArray) -> IntArray:
-    """Return (X, Y, Z) for each point the lowest layer over which it is joined to the outside.
-
-    Water stands at a point when that layer is above its own: every way out leads higher. Outside is the
-    border of the lattice, and all below the object: the table carries no water. Air caught under an overhang
-    counts as water.
-
-    Args:
-        lattice: around the object.
-        taken: (X, Y, Z) points at which nothing can be.
-    """
-    return _spill(lattice.parted, taken)  # type: ignore[no-any-return]  # numba hides it
-
-
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _root(parent: IntArray, point: int) -> int:
-    while parent[point] != point:
-        parent[point] = parent[parent[point]]
-        point = parent[point]
-    return point
-
-
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _neighbours(
-    parted: BoolArray, taken: BoolArray, at: tuple[int, int, int], outside: int, found: IntArray
-) -> int:
-    """Write the points already reached that `at` is joined to into `found` and return how many."""
-    i, j, k = at
-    n_x, n_y, n_z = taken.shape
-    point = (i * n_y + j) * n_z + k
-    count = 0
-    if min(i, j, k) == 0 or i == n_x - 1 or j == n_y - 1 or k == n_z - 1:
-        found[count] = outside
-        count += 1
-    if i > 0 and not parted[0, i - 1, j, k] and not taken[i - 1, j, k]:
-        found[count] = point - n_y * n_z
-        count += 1
-    if j > 0 and not parted[1, i, j - 1, k] and not taken[i, j - 1, k]:
-        found[count] = point - n_z
-        count += 1
-    if k > 0 and not parted[2, i, j, k - 1] and not taken[i, j, k - 1]:
-        found[count] = point - 1
-        count += 1
-    return count
-
-
-@numba.njit(cache=True, nogil=True)  # type: ignore[untyped-decorator]
-def _spill(parted: BoolArray, taken: BoolArray) -> IntArray:
-    """Raise the water layer by layer, joining points (union-find); each group is a list that drains once."""
-    n_x, n_y, n_z = taken.shape
-    n = n_x * n_y * n_z
-    parent, following, tail = np.arange(n + 1), np.full(n + 1, -1), np.arange(n + 1)
-    spill, found = np.full(n, NEVER), np.empty(4, dtype=np.int64)
-    for k, i, j in np.ndindex(n_z, n_x, n_y):
-        if taken[i, j, k]:
-            continue
-        for index in range(_neighbours(parted, taken, (i, j, k), n, found)):
-            one, other = _root(parent, (i * n_y + j) * n_z + k), _root(parent, found[index])
-            if one == other:
-                continue
-            if one == n:  # the outside stays a root
-                one, other = other, one
-            parent[one] = other
-            if other == n:
-                while one >= 0:
-                    spill[one] = k
-                    one = following[one]
-            else:
-                following[tail[other]] = one
-                tail[other] = tail[one]
-    return spill.reshape(n_x, n_y, n_z)
