@@ -16,12 +16,9 @@ from core.reconstruction.fusion import FusedObject, fuse_object
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.segmentation import Part, cut_at_height, cut_at_table, fill_unseen
 from core.reconstruction.tsdf import DistanceGrid, TsdfVolume, extract_surface, largest_piece
-from core.reconstruction.unseen import find_unseen_inside
+from core.reconstruction.unseen import SMALLEST_UNSEEN_ML, UnseenInside, find_unseen_inside
 from core.scan.model import Scan
 from core.unseen_readings import UnseenReadings
-
-SMALLEST_UNSEEN_ML = 2.0
-"""Room for two candies."""
 
 
 def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Reporter) -> Reconstruction:
@@ -32,17 +29,19 @@ def reconstruct(scan: Scan, parameters: ReconstructionParameters, reporter: Repo
         Cancelled: the user asked to stop.
     """
     fused = fuse_object(scan, parameters, reporter)
-    field = _object_field(fused, parameters)
-    mesh = field.surface(fused.support_m)
-    unseen = _unseen_readings(fused, field) if parameters.unseen == "solid" else None
-    truncation_m = fused.volume.truncation_m
-    return Reconstruction(mesh, fused.support_m, truncation_m, fused.health, fused.refinement, unseen)
+    field, readings = _object_field(fused, parameters), None
+    if parameters.unseen == "solid":
+        unseen = find_unseen_inside(fused.volume, fused.support_m)
+        holes = field.free_down_to(fused.support_m, unseen.first_layer)
+        field = field.freed(unseen.beside_holes(fused.volume, holes))
+        readings = _unseen_readings(fused, field, unseen)
+    mesh, truncation_m = field.surface(fused.support_m), fused.volume.truncation_m
+    return Reconstruction(mesh, fused.support_m, truncation_m, fused.health, fused.refinement, readings)
 
 
-def _unseen_readings(fused: FusedObject, solid: _ObjectField) -> UnseenReadings | None:
+def _unseen_readings(fused: FusedObject, solid: _ObjectField, unseen: UnseenInside) -> UnseenReadings | None:
     """What else the object may be, where views ended inside its openings; none if none could matter."""
     volume, support_m = fused.volume, fused.support_m
-    unseen = find_unseen_inside(volume, support_m)
     room = unseen.room(volume.voxel_m)
     unseen_ml = float(room.sum() * volume.voxel_m**3 * 1e6)
     if unseen_ml < SMALLEST_UNSEEN_ML:
@@ -66,6 +65,15 @@ class _ObjectField:
     distance: DistanceGrid
     keeps_specks: bool
     floor: SeenFloor | None = None
+
+    def free_down_to(self, support_m: float, layer: int) -> BoolArray:
+        """Return (X, Y) which columns of the whole volume are free from a layer of it down to the support."""
+        layers = np.arange(self.distance.shape[2]) + self.part.low[2]
+        heights_m = self.volume.origin_m[2] + self.volume.voxel_m * layers
+        below = self.distance[:, :, (layers <= layer) & (heights_m > support_m)]
+        columns = np.zeros(self.volume.weight.shape[:2], dtype=np.bool_)
+        columns[self.part.slices[:2]] = (below > 0).all(axis=2)
+        return columns
 
     def freed(self, voxels: BoolArray) -> _ObjectField:
         """Take voxels (X, Y, Z) of the whole volume as free, whatever they were."""

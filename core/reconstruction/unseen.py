@@ -28,6 +28,8 @@ _FAR_M = 1e3
 """Between layers: distances are taken within them."""
 THINNEST_WALL_M = 0.003
 """What the roomiest reading leaves of walls and floor that nobody saw from inside."""
+SMALLEST_UNSEEN_ML = 2.0
+"""Room for two candies; less is no inside that was not seen."""
 NARROWEST_HOLE_M = 0.006
 """A way through the bottom is at least as wide: less than a candy is thick."""
 
@@ -75,6 +77,24 @@ class UnseenInside:
         below = volume.weight[:, :, : self.first_layer] == 0
         through[:, :, : self.first_layer] = self.region[:, :, :1] & below
         return through
+
+    def beside_holes(self, volume: TsdfVolume, is_hole: BoolArray) -> BoolArray:
+        """Return (X, Y, Z) of the volume the little that no view saw beside a hole that views looked through.
+
+        Slanting views see no more than a part of a spout's mouth. Left solid, the rest would narrow the hole.
+
+        Args:
+            volume: the one that was asked.
+            is_hole: (X, Y) columns that are known to be free down to the support.
+        """
+        groups, _ = label(self.region)
+        sizes_ml = np.bincount(groups.ravel()) * volume.voxel_m**3 * 1e6
+        beside = binary_dilation(is_hole & self.enclosed[:, :, 0] & self.free[:, :, 0])
+        touching = np.unique(groups[:, :, 0][beside])
+        little = touching[(touching > 0) & (sizes_ml[touching] < SMALLEST_UNSEEN_ML)]
+        freed = np.isin(groups, little)
+        down = freed[:, :, :1] & (volume.weight[:, :, : self.first_layer] == 0)
+        return np.concatenate([down, freed], axis=2)
 
     def _reaches_support(self, hollow: BoolArray, voxel_m: float) -> bool:
         if hollow[:, :, 0].sum() * voxel_m**2 < SMALLEST_PATCH_M2:

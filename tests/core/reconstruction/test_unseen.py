@@ -3,12 +3,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from core.imagination.capacity.openings import has_opening_below
+from core.imagination.capacity.water import find_basin
 from core.parameters.reconstruction import ReconstructionParameters
 from core.progress import Reporter
 from core.reconstruction.result import Reconstruction
 from core.reconstruction.stage import reconstruct
 from core.reconstruction.unseen import THINNEST_WALL_M, find_unseen_inside
 from hardware.simulation.objects import builtin_object
+from tests.core.imagination.capacity.conftest import turned
 from tests.core.quality.studio import LOW_RINGS, VOXEL_M, on_platform, shaft, tube
 
 
@@ -74,6 +77,17 @@ def test_a_lid_that_was_seen_from_above_is_there_however_little_was_seen_below_i
     assert not room[:, :, 29].any()
 
 
+@pytest.mark.parametrize(("columns", "is_hole", "n_freed"), [(1, True, 3 * 11), (1, False, 0), (2, True, 0)])
+def test_the_little_that_was_not_seen_beside_a_hole_is_taken_for_a_part_of_it(columns, is_hole, n_freed):
+    """1.4 and 2.8 ml above the platform's layer; in 2 ml two candies have room."""
+    volume = shaft(0.0)
+    volume.weight[10 : 10 + columns, 10:21, :3] = 0
+    unseen = find_unseen_inside(volume, platform_height_m=0.0)
+    freed = unseen.beside_holes(volume, np.full(volume.weight.shape[:2], is_hole))
+    assert freed.sum() == n_freed
+    assert not freed[volume.weight > 0].any()
+
+
 def reconstructed(mesh) -> Reconstruction:
     return reconstruct(on_platform(mesh).scan(LOW_RINGS), ReconstructionParameters(), Reporter())
 
@@ -100,6 +114,15 @@ def test_it_survives_a_session(deep_tube, tmp_path):
     assert loaded.unseen is not None and loaded.unseen.leaky is not None
     assert loaded.unseen.unseen_ml == deep_tube.unseen.unseen_ml
     assert np.array_equal(loaded.unseen.leaky.faces, deep_tube.unseen.leaky.faces)
+
+
+def test_a_spout_is_not_narrowed_by_what_slanting_views_did_not_see_of_it():
+    """20 mm wide and 40 long: with a crescent at its end left solid, nothing wider than 9 mm fell through."""
+    corners = [(0.05, 0.085), (0.01, 0.04), (0.01, 0.0), (0.013, 0.0), (0.013, 0.04), (0.053, 0.085)]
+    scan = on_platform(turned([*corners, corners[0]])).scan()
+    mesh = reconstruct(scan, ReconstructionParameters(), Reporter()).mesh
+    hollows = find_basin(mesh, 0.02, 1.0, 200_000).hollow_map
+    assert has_opening_below(mesh, mesh.vertices_m[:, :2], hollows, 0.013)
 
 
 @pytest.mark.parametrize("name", ["mug", "block"])
