@@ -4,7 +4,9 @@ import trimesh
 
 from core.imagination.capacity.water import find_basin
 from core.mesh import TriangleMesh
+from core.mesh_topology import join
 from tests.core.imagination.capacity.conftest import open_box, polygon_share, turned
+from tests.core.imagination.conftest import box
 
 CANDY_M = 0.0132
 POINTS = 400_000
@@ -62,6 +64,14 @@ def test_a_belly_wider_than_its_mouth_is_filled_under_its_shoulder():
     middle, below_shoulder = np.array([[0.0, 0.0]]), np.array([[0.04, 0.0]])
     assert seen.room_at(middle)[0] == pytest.approx(0.028, abs=0.002)
     assert seen.room_at(below_shoulder)[0] == 0 and np.isfinite(seen.rim_at(below_shoulder)[0])
+
+
+def test_what_lies_across_a_mouth_is_in_the_way_of_what_falls_though_candies_lie_below_it():
+    handle = box((0.035, -0.003, 0.07), (0.045, 0.063, 0.075))
+    seen = basin_of(join((open_box((0.08, 0.06, 0.05), 0.003), handle))).hollow_map
+    below, beside = np.array([[0.04, 0.03]]), np.array([[0.0175, 0.03]])
+    assert np.isfinite(seen.rim_at(below)[0]) and seen.room_at(below)[0] == 0
+    assert seen.room_at(beside)[0] == pytest.approx(0.0175, abs=0.0015)
 
 
 def test_a_tube_open_below_and_an_upturned_cup_hold_nothing():
