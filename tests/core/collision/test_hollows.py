@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import trimesh
 from scipy.ndimage import gaussian_filter
 
 from core.collision import simplify
@@ -58,3 +59,10 @@ def test_hollows_are_kept_by_the_surface_itself_and_not_without_a_wall() -> None
     assert hollows.are_kept_by(cup)
     half = TriangleMesh(cup.vertices_m, cup.faces[cup.vertices_m[cup.faces, 0].mean(axis=1) < 0.01])
     assert not hollows.are_kept_by(half)
+
+
+@pytest.mark.parametrize(("lost_face", "euler"), [(False, 0), (True, -1)])
+def test_a_handle_makes_eulers_number_less_by_two_and_a_hole_in_the_surface_by_one(lost_face, euler) -> None:
+    ring = trimesh.creation.torus(0.04, 0.01)
+    faces = np.asarray(ring.faces, dtype=np.int64)
+    assert topology(TriangleMesh(np.asarray(ring.vertices), faces[int(lost_face) :])).euler == euler
