@@ -56,7 +56,7 @@ def topology(mesh: TriangleMesh) -> Topology:
         n_open=int((shared_by == 1).sum()),
         n_crowded=int((shared_by > 2).sum()),
         is_consistent=not np.isin(twice_keys, keys[shared_by == 2]).any(),
-        euler=np.count_nonzero(np.bincount(mesh.faces.ravel())) - len(keys) + len(mesh.faces),
+        euler=int(np.count_nonzero(np.bincount(mesh.faces.ravel()))) - len(keys) + len(mesh.faces),
     )
 
 
