@@ -128,7 +128,7 @@ class ModelView(QWidget):
         self._model, self._difference_m = model, difference_m
         self._offer_modes()
         if model is not None and model.body.rgb is not None and not was_photographed:
-            self.modes.choose(PHOTO)
+            self._prefer_photo()
         for layer in ("object", "hidden", "collision", "ground"):
             self.scene.remove(layer)
         places = {} if model is None else {"object": model.centers_m}
@@ -145,6 +145,11 @@ class ModelView(QWidget):
             self._draw_ground(model)
         if is_first:
             self.scene.fit("object")
+
+    def _prefer_photo(self) -> None:
+        """The colours are known last; a height or a difference that is being looked at stays."""
+        if self.modes.mode == "shape":
+            self.modes.choose(PHOTO)
 
     def set_empty_text(self, text: str) -> None:
         """What the view says while there is no model."""

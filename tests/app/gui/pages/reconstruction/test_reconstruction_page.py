@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -185,6 +186,21 @@ def test_another_session_leaves_nothing_of_the_one_before(mug_page, desk, tmp_pa
     assert mug_page.model is None
     assert "object" not in mug_page.view.scene.layers()
     assert "appears here" in text(mug_page, "model_verdict")
+
+
+@pytest.mark.parametrize(
+    ("chosen", "then"), [("shape", "photo"), ("height", "height"), ("difference", "difference")]
+)
+def test_colours_that_come_last_take_the_place_of_the_bare_shape_only(mug_page, chosen, then):
+    view, model = mug_page.view, mug_page.model
+    n = len(model.mesh.vertices_m)
+    bare, colored = (
+        replace(model, body=replace(model.body, rgb=rgb)) for rgb in (None, np.ones((n, 3), "f4"))
+    )
+    view.show_model(bare, np.zeros(n))
+    view.modes.choose(chosen)
+    view.show_model(colored, np.zeros(n))
+    assert view.modes.mode == then
 
 
 @pytest.mark.system
