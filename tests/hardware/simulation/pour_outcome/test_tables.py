@@ -13,6 +13,7 @@ from core.workers import Task, WorkerPool
 from hardware.simulation.objects import boxed
 from hardware.simulation.pour_outcome.bodies import GRAVITY_M_S2, Bodies
 from hardware.simulation.pour_outcome.settings import OutcomeSettings
+from hardware.simulation.pour_outcome.worlds import WORLDS
 from tests.hardware.simulation.pour_outcome.conftest import PLATFORM, TABLE_M
 from tests.hardware.simulation.pour_outcome.paths import CUP
 from tests.hardware.simulation.pour_outcome.probes import UPRIGHT, follow, framed_pyramid
@@ -94,3 +95,16 @@ def test_candies_rest_at_their_own_height_on_object_platform_and_table(let_go: L
     starts[:, 2] = floors_m + 0.02
     way_m = let_go(mesh, starts, UPRIGHT, 2.0)
     assert way_m[-1, :, 2] - floors_m == pytest.approx(HALF_M, abs=1e-4)
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_candies_that_came_to_rest_in_a_heap_stay_at_rest(pool: WorkerPool, world: str) -> None:
+    """A contact that is found too deep throws them."""
+    box = boxed([(0.04, 0.04, 0.0), (0.04, 0.04, 0.08)], 0.003).translated(RAISED_M)
+    places_m = np.stack(np.meshgrid(*2 * [[-0.014, 0.0, 0.014]], 0.01 + 0.01 * np.arange(6)), axis=-1)
+    bodies = Bodies(box, CUP, TABLE_M, PLATFORM)
+    task = Task(follow, (bodies, WORLDS[world], RAISED_M + places_m.reshape(-1, 3), UPRIGHT, 3.0))
+    way_m = pool.run([task], "probe", Reporter())[0]
+    steps_m = np.linalg.norm(np.diff(way_m, axis=0), axis=2)
+    resting_m_s = WORLDS[world].rate_hz * steps_m[len(steps_m) // 2 :]
+    assert resting_m_s.max() < 0.1
