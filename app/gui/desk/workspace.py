@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
@@ -16,6 +18,8 @@ from core.pipeline.session_view import PoursFacts, SessionView, VerdictFacts
 from core.session import Session, StageRecord
 from core.session.pour_runs import PourRun, pour_runs
 from core.stages import GIVEN, MESH, STAGE_NAMES, stages_before
+
+T = TypeVar("T")
 
 _PROGRESS_OF = {"judgement": ("capacity",), "amount": ()}
 """Stages whose progress goes by other names, or that take no time."""
@@ -155,17 +159,18 @@ class Workspace(QObject):
     @property
     def pours(self) -> PoursFacts | None:
         """The imagined pours in numbers; none without them, or where their files are damaged."""
-        try:
-            return None if self.view is None else self.view.pours
-        except SessionError:  # the page that shows them says so
-            return None
+        return self._read(lambda view: view.pours)
 
     @property
     def _verdict(self) -> VerdictFacts | None:
         """None also where its files are damaged."""
+        return self._read(lambda view: view.verdict)
+
+    def _read(self, read: Callable[[SessionView], T | None]) -> T | None:
+        """Return what the session holds; none where its files are damaged: the page that shows it says so."""
         try:
-            return None if self.view is None else self.view.verdict
-        except SessionError:  # the page that shows it says so
+            return None if self.view is None else read(self.view)
+        except SessionError:
             return None
 
     def edit(self, parameters: Parameters, text: str) -> None:
