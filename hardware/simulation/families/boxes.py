@@ -77,7 +77,7 @@ def compartments(draw: Draw) -> Form:
     heights[[0, -1]] = heights[:, [0, -1]] = wall + depth
     heights[1::2, 1::2] = wall
     block = Block.of_cells(edges_x, edges_y, heights)
-    return Form(block.mesh, block.capacity_m3(wall + depth), depth, Gap(narrow), wall)
+    return Form(block.mesh, block.capacity_m3(wall + depth), depth, Gap(narrow, "square"), wall)
 
 
 def _walls_and_rooms(n_rooms: int, wall_m: float, room_m: float) -> list[float]:

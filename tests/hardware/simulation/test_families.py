@@ -159,6 +159,13 @@ def test_the_label_follows_from_what_a_candy_can_do(changed, label, said):
     assert re.search(said, truth.reason)
 
 
+def test_a_candy_that_no_round_room_takes_gets_into_a_square_one_aslant():
+    truth = member(FAMILIES["compartments"], 12, 2).truth
+    width_m = truth.mouth_mm / 1000
+    assert truth_of(form(mouth=Gap(width_m))).label == "non-container"
+    assert truth.label == truth_of(form(mouth=Gap(width_m, "square"))).label == "ambiguous"
+
+
 def test_a_solid_body_is_labelled_by_its_reason():
     truth = truth_of(solid(BOX.mesh, 0.01, "it is closed"))
     assert (truth.label, truth.reason, truth.capacity_candies) == ("non-container", "It is closed.", 0)
